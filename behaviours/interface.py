@@ -144,7 +144,10 @@ class Head:
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """What the actuators shall do until the next command; None leaves an actuator to its safe state (drive: stop; head: stay)."""
+    """What the actuators shall do until the next command.
+
+    None leaves an actuator to its safe state (drive: stop; head: stay).
+    """
 
     drive: Drive | None = None
     head: Head | None = None
@@ -170,7 +173,7 @@ ACTUATORS = ("drive", "head")
 # --- what a robot can do --------------------------------------------------------------------------
 
 Channels = Mapping[str, object]
-"""Output channel -> value. Earlier channels hold this tick's value, the others last tick's; an unset channel is None."""
+"""Output channel -> value: this tick's in the channels before, last tick's in the others; an unset channel is None."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,7 +216,10 @@ class Estimator(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A parameter of a library. type: "number", "bool" or "symbol"; unit: SI unit of a number ("m", "s", "rad", "m/s", "" …)."""
+    """A parameter of a library.
+
+    type: "number", "bool" or "symbol"; unit: SI unit of a number ("m", "s", "rad", "m/s", "" …).
+    """
 
     name: str
     type: str

@@ -41,9 +41,7 @@ class PlanError(Exception):
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
         self.diagnostics = tuple(diagnostics)
-        super().__init__(
-            "; ".join(f"{d.span}: {d.message}" for d in self.diagnostics if d.severity == "error")
-        )
+        super().__init__("; ".join(f"{d.span}: {d.message}" for d in self.diagnostics if d.severity == "error"))
 
 
 class InternalError(Exception):
