@@ -1,0 +1,211 @@
+"""A run on disk: one MCAP file with a header and one JSON object a tick.
+
+Takes: a header, and tick by tick the state of the world and the brain's note (JSON text). Gives: a file that is the
+same to the byte for the same run, since every stamp in it is simulated; and the way back, `read`.
+Leaves alone: what world and brain put into their parts, the judgement of the run, and how it is shown.
+
+Topics: `/header` once and `/tick` (JSON; tick n carries `tick`, `t` [s], `world`, `plan`), and `/pose`
+(foxglove.PoseInFrame, the true pose), so that any MCAP viewer can play the file as well.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import struct
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from io import FileIO
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from foxglove import Channel, Context, open_mcap
+from foxglove.channels import PoseInFrameChannel
+from foxglove.mcap import MCAPCompression, MCAPWriteOptions
+from foxglove.messages import Pose, PoseInFrame, Quaternion, Timestamp, Vector3
+from mcap.exceptions import McapError
+from mcap.records import Channel as ChannelRecord
+from mcap.records import Message
+from mcap.stream_reader import CRCValidationError, StreamReader
+from zstandard import ZstdError
+
+FORMAT = 1
+"""Number of the layout of header and ticks; a reader refuses a later one."""
+
+CHUNK = 16 * 1024
+"""Bytes [uncompressed] that are closed and written together: at most so much is lost in a crash."""
+
+MAGIC = b"\x89MCAP0\r\n"
+BROKEN = (McapError, CRCValidationError, struct.error, ZstdError, EOFError, ValueError)
+
+Json = Mapping[str, object]
+
+
+class RecordingError(Exception):
+    """A recording that cannot be read: what, which file, what to do, in one line."""
+
+
+# --- writing --------------------------------------------------------------------------------------
+
+
+def _finite(value: object) -> object:
+    """The same JSON value with None for every number that JSON does not know."""
+    match value:
+        case float():
+            return value if math.isfinite(value) else None
+        case Mapping():
+            return {key: _finite(part) for key, part in value.items()}
+        case str():
+            return value
+        case Sequence():
+            return [_finite(part) for part in value]
+        case _:
+            return value
+
+
+_encode = json.JSONEncoder(separators=(",", ":"), ensure_ascii=False, allow_nan=False, check_circular=False).encode
+
+
+def json_text(value: object) -> str:
+    """Compact JSON; a number that is not finite becomes null."""
+    try:
+        return _encode(value)
+    except ValueError:
+        return _encode(_finite(value))
+
+
+def _finite_text(note: str) -> str:
+    """The note as it is, unless it speaks of numbers that JSON does not know."""
+    return json_text(json.loads(note)) if "NaN" in note or "Infinity" in note else note
+
+
+def _pose(world: Json, nanoseconds: int) -> PoseInFrame | None:
+    match world.get("robot"):
+        case (float() | int() as x, float() | int() as y, float() | int() as theta):
+            sec, nsec = divmod(nanoseconds, 1_000_000_000)
+            turned = Quaternion(x=0.0, y=0.0, z=math.sin(theta / 2), w=math.cos(theta / 2))
+            pose = Pose(position=Vector3(x=x, y=y, z=0.0), orientation=turned)
+            return PoseInFrame(timestamp=Timestamp(sec=sec, nsec=nsec), frame_id="world", pose=pose)
+        case _:
+            return None
+
+
+class Recorder:
+    """Writes one recording; a context manager. An existing file is replaced.
+
+    The header stands on disk before the first tick, so that a run that dies leaves every closed chunk readable.
+    Raises OSError where the file cannot be written.
+    """
+
+    def __init__(self, path: Path | str, header: Json) -> None:
+        self._file = FileIO(path, "wb")
+        self._context = context = Context()  # the channels die with it
+        options = MCAPWriteOptions(compression=MCAPCompression.Zstd, chunk_size=CHUNK, compression_threads=0)
+        self._writer = open_mcap(self._file, context=context, writer_options=options)
+        header_channel = Channel("/header", message_encoding="json", context=context)
+        self._tick = Channel("/tick", message_encoding="json", context=context)
+        self._pose = PoseInFrameChannel("/pose", context=context)
+        self._count = 0
+        header_channel.log(json_text({"format": FORMAT, **header}).encode(), log_time=0)
+        self._writer.flush()
+
+    def tick(self, t: float, world: Json, note_json: str) -> None:
+        """Append one tick: simulated time [s], the world's snapshot, the brain's note as JSON text ("null": none)."""
+        nanoseconds = round(t * 1e9)
+        note = _finite_text(note_json)
+        text = f'{{"tick":{self._count},"t":{json_text(t)},"world":{json_text(world)},"plan":{note}}}'
+        self._tick.log(text.encode(), log_time=nanoseconds)
+        if pose := _pose(world, nanoseconds):
+            self._pose.log(pose, log_time=nanoseconds)
+        self._count += 1
+
+    def close(self) -> None:
+        """Finish the file; the second call does nothing."""
+        if not self._file.closed:
+            self._writer.close()
+            self._file.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, fault: BaseException | None, at: TracebackType | None) -> None:
+        self.close()
+
+
+# --- reading --------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """One run. ticks may be iterated again and again; those of a file are read anew each time, chunk by chunk.
+
+    cut_short: the writer died before it closed the file; ticks has what it had written by then.
+    """
+
+    header: Json
+    ticks: Iterable[Json]
+    cut_short: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class _Ticks:
+    path: Path
+    cut_short: bool
+
+    def __iter__(self) -> Iterator[Json]:
+        return (json.loads(data) for data in _messages(self.path, "/tick", self.cut_short))
+
+
+def _messages(path: Path, topic: str, cut_short: bool) -> Iterator[bytes]:
+    """The messages of a topic in file order; where the file was cut short it ends quietly."""
+    with path.open("rb") as stream:
+        channels: dict[int, str] = {}
+        try:
+            for record in StreamReader(stream, validate_crcs=True, record_size_limit=path.stat().st_size).records:
+                match record:
+                    case ChannelRecord():
+                        channels[record.id] = record.topic
+                    case Message() if channels.get(record.channel_id) == topic:
+                        yield record.data
+        except BROKEN as fault:
+            if not cut_short:
+                raise RecordingError(f"{path} is damaged ({fault}): record the run again") from fault
+
+
+def _is_cut_short(path: Path) -> bool:
+    """Whether the closing magic is missing; raises RecordingError where the opening one is."""
+    with path.open("rb") as stream:
+        start = stream.read(len(MAGIC))
+        stream.seek(-len(start), 2)
+        end = stream.read()
+        if not start:
+            raise RecordingError(f"{path} is empty: the run wrote nothing; record it again")
+        if start != MAGIC:
+            raise RecordingError(f"{path} is not an MCAP file: give a recording made by rplan")
+        return end != MAGIC or stream.tell() == len(MAGIC)
+
+
+def _header(path: Path, cut_short: bool) -> Json:
+    text = next(_messages(path, "/header", cut_short), None)
+    if text is None and cut_short:
+        raise RecordingError(f"{path} was cut short before its header was written: record the run again")
+    header = None if text is None else json.loads(text)
+    if not isinstance(header, dict) or not isinstance(header.get("format"), int):
+        raise RecordingError(f"{path} is an MCAP file without rplan's /header: give a recording made by rplan")
+    if header["format"] > FORMAT:
+        raise RecordingError(
+            f"{path} has recording format {header['format']}, this rplan reads up to {FORMAT}: use a newer rplan"
+        )
+    return header
+
+
+def read(path: Path | str) -> Recording:
+    """The recording in a file; its ticks are read while they are iterated.
+
+    Raises RecordingError where the file is no recording (also while iterating, where it is damaged further in);
+    OSError where it cannot be opened.
+    """
+    path = Path(path)
+    cut_short = _is_cut_short(path)
+    return Recording(_header(path, cut_short), _Ticks(path, cut_short), cut_short)
