@@ -1,0 +1,767 @@
+"""Forms to a `Plan` (the table of the top level, L8 without arithmetic, L12-L17 without parameters).
+
+Takes: forms and the source they come from. Gives: a `Plan` and warnings, or every error at once. Leaves alone: whether
+names exist and types fit.
+
+An error leaves a placeholder in its place, so that the rest is still checked and one mistake is told once; a plan with
+an error is thrown away at the end.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import PurePath
+from typing import Literal, TypeVar
+
+from rplan.lang.depth import MAX_LEVELS, deep_recursion
+from rplan.lang.diagnostic import Diagnostic, PlanError, Related
+from rplan.lang.plan import (
+    AllOf,
+    And,
+    AnyOf,
+    Anything,
+    Call,
+    Comparator,
+    Compare,
+    Condition,
+    Declaration,
+    Do,
+    Expression,
+    Goal,
+    Header,
+    If,
+    NamedCondition,
+    Not,
+    Number,
+    Or,
+    OutputDeclaration,
+    Plan,
+    PrioAnd,
+    Rule,
+    Setting,
+    Subgoal,
+    TopGoal,
+    Truth,
+    Type,
+    Use,
+)
+from rplan.lang.reader import (
+    TOP_FORMS,
+    Broken,
+    Form,
+    Keyword,
+    ListForm,
+    Numeral,
+    Symbol,
+    Text,
+    Variable,
+    capped,
+    read_with_errors,
+)
+from rplan.lang.source import Source, Span
+from rplan.lang.suggest import close
+from rplan.lang.units import SI_UNITS, UNITS, dimension
+
+GOAL_FORMS = ("do", "if", "when", "cond", "and", "or", "prio-and", "ach", "maint")
+COMPARATORS: tuple[Comparator, ...] = ("<", "<=", ">", ">=", "=", "/=")
+CONDITION_FORMS = ("not", "and", "or", *COMPARATORS)
+TYPES = ("bool", "number", "pose", "command", "symbol")
+DEFAULT_PERIOD = 0.1
+"""The length of a tick [s] where the plan tells none."""
+
+_MEMORY = ("delay", "once", "historically", "since", "latch", "rose", "fell", "held-for", "within", "at-least")
+_ARITHMETIC = ("+", "-", "*", "/", "min", "max", "abs")
+_TRUTHS = ("true", "false")
+_RESERVED = (*_TRUTHS, "anything", "else", *TOP_FORMS, *GOAL_FORMS, *CONDITION_FORMS, *_MEMORY, *_ARITHMETIC)
+
+_TAKES = {
+    "plan": "a name",
+    "use": "the name of a library and its parameters",
+    "declare": "`(NAME (ARGUMENT TYPE)...)`, a type and perhaps a text",
+    "defoutput": "a name and a type",
+    "defcond": "`(NAME)`, perhaps a text, and a condition",
+    "defgoalr": "`(ach NAME)` or `(maint NAME)`, perhaps a text, and a goal",
+    "goalem": "a goal",
+    "goallem": "a goal",
+    "do": "an output and a value, or is `(do anything)`",
+    "if": "a condition, a goal and an else goal",
+    "when": "a condition and a goal",
+    "cond": "one or more clauses `(CONDITION GOAL)`, at last perhaps `(else GOAL)`",
+    "ach": "the name of a goal",
+    "maint": "the name of a goal",
+    "not": "a condition",
+}
+_HINTS = {
+    ("if", 2): "use `when` for an if without else",
+    ("when", 3): "use `if` for a when with an else goal",
+    ("defgoalr", 3): "join goals with `and`, `or` or `prio-and`",
+    ("goalem", 2): "join goals with `and`, `or` or `prio-and`",
+    ("goallem", 2): "join goals with `and`, `or` or `prio-and`",
+    ("not", 2): "join conditions with `and` or `or`",
+}
+
+Kind = Literal["ach", "maint"]
+Parsed = TypeVar("Parsed")
+Named = TypeVar("Named", Use, Declaration, OutputDeclaration, NamedCondition)
+
+
+def parse(forms: Sequence[Form], source: Source) -> tuple[Plan, tuple[Diagnostic, ...]]:
+    """The plan that the forms make up, and warnings. Raises PlanError with every error and warning."""
+    parser = _Parser(source)
+    with deep_recursion():
+        plan = parser.plan(forms)
+    return _plan_or_error(plan, parser.found)
+
+
+def parse_text(source: Source) -> tuple[Plan, tuple[Diagnostic, ...]]:
+    """`read` and `parse` in one, so that errors of the text and errors of the forms are told together."""
+    forms, errors = read_with_errors(source)
+    if errors and not forms:
+        raise PlanError(capped(errors))
+    parser = _Parser(source)
+    with deep_recursion():
+        plan = parser.plan(forms)
+    return _plan_or_error(plan, [*errors, *parser.found])
+
+
+def _plan_or_error(plan: Plan, found: Iterable[Diagnostic]) -> tuple[Plan, tuple[Diagnostic, ...]]:
+    inorder = tuple(sorted(found, key=lambda diagnostic: diagnostic.span))
+    if any(diagnostic.severity == "error" for diagnostic in inorder):
+        raise PlanError(capped(inorder))
+    return plan, inorder
+
+
+@dataclass(frozen=True, slots=True)
+class _Option:
+    """`:name value`; value is None for a keyword that takes none."""
+
+    keyword: Keyword
+    value: Form | None
+
+
+class _Parser:
+    """Each method takes a form, notes what is wrong with it in `found`, and gives what it says or a placeholder.
+
+    level: how many parentheses are open around the printed text of what is parsed.
+    """
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+        self.found: list[Diagnostic] = []
+
+    def error(self, code: str, message: str, span: Span, hint: str = "", related: tuple[Related, ...] = ()) -> None:
+        self.found.append(Diagnostic(code, "error", message, span, related, hint))
+
+    # --- the whole ---
+
+    def plan(self, forms: Sequence[Form]) -> Plan:
+        if not forms:
+            hint = "a plan has rules `(defgoalr (ach NAME) GOAL)` and a top goal `(goalem GOAL)`"
+            self.error("empty-plan", "the plan is empty", Span(self.source.name, 1, 1, 1, 1), hint)
+        start = forms[0].span if forms else Span(self.source.name, 1, 1, 1, 1)
+        heads = [(_head(form), form) for form in forms]
+        self._strays(heads)
+
+        def every(parse_one: Callable[[ListForm], Parsed], *names: str) -> tuple[Parsed, ...]:
+            return tuple(parse_one(form) for head, form in heads if head in names and isinstance(form, ListForm))
+
+        headers = every(self.header, "plan")
+        tops = every(self.top_goal, "goalem", "goallem")
+        self._only_one("plan", "a plan has one header", [header.span for header in headers])
+        self._only_one("goalem", "a plan has one top goal", [top.span for top in tops])
+        return Plan(
+            headers[0] if headers else Header(_name_of_file(self.source.name), "", DEFAULT_PERIOD, start),
+            self._distinct("library", [(use.library, use) for use in every(self.use, "use")]),
+            self._distinct("function", [(one.name, one) for one in every(self.declaration, "declare")]),
+            self._distinct("output", [(one.name, one) for one in every(self.output, "defoutput")]),
+            self._distinct("condition", [(one.name, one) for one in every(self.named_condition, "defcond")]),
+            every(self.rule, "defgoalr"),
+            tops[0] if tops else None,
+            start,
+        )
+
+    def _strays(self, heads: Sequence[tuple[str | None, Form]]) -> None:
+        """Report what is no form of the top level; words in a row count as one."""
+        words: list[Form] = []
+        for head, form in heads:
+            if not isinstance(form, ListForm):
+                words.append(form)
+                continue
+            self._stray_words(words)
+            words = []
+            if head is None:
+                self._no_head(form, "a form", TOP_FORMS)
+            elif head in GOAL_FORMS:
+                hint = "a rule begins with `defgoalr`, the top goal with `goalem`"
+                self.error("misplaced-form", f"a goal `({head} ...)` stands outside of a rule", form.span, hint)
+            elif head not in TOP_FORMS:
+                self._unknown(head, form, "form", TOP_FORMS)
+        self._stray_words(words)
+
+    def _stray_words(self, words: Sequence[Form]) -> None:
+        said = [word for word in words if not isinstance(word, Broken)]
+        if said:
+            first, last = said[0].span, said[-1].span
+            span = Span(first.file, first.line, first.column, last.end_line, last.end_column)
+            what = "a word stands" if len(said) == 1 else f"{len(said)} words stand"
+            self.error("stray-word", f"{what} outside of every form", span, _known("form", TOP_FORMS))
+
+    def _only_one(self, code_word: str, message: str, spans: Sequence[Span]) -> None:
+        for span in spans[1:]:
+            self.error("duplicate", f"{message}: this is another `{code_word}`", span, "", _first(spans[0]))
+
+    def _distinct(self, what: str, named: Sequence[tuple[str, Named]]) -> tuple[Named, ...]:
+        seen: dict[str, Span] = {}
+        for name, one in named:
+            if name in seen and name:
+                self.error("duplicate", f"the {what} `{name}` is there twice", one.span, "", _first(seen[name]))
+            seen.setdefault(name, one.span)
+        return tuple(one for _, one in named)
+
+    # --- the top level ---
+
+    def header(self, form: ListForm) -> Header:
+        rest, options = self._split(form.items[1:], ("period",))
+        doc, rest = self._without_doc(rest, 1)
+        name = self._name(rest[0], "a plan") if self._count("plan", form, rest, 1) else ""
+        option = options.get("period")
+        period = self._period(option.value) if option and option.value else DEFAULT_PERIOD
+        return Header(name, doc, period, form.span)
+
+    def _period(self, form: Form) -> float:
+        if not isinstance(form, Numeral):
+            self._unexpected(form, "a time such as `0.1s`", "bad-value")
+        elif form.unit not in ("s", ""):
+            message = f"`:period` is a time, `{form.text}` is a {dimension(form.unit)}"
+            self.error("unit-mismatch", message, form.span, "times have the units `s`, `ms` or `min`")
+        elif form.value <= 0:
+            self.error("bad-value", "`:period` is a time longer than nothing", form.span)
+        else:
+            if not form.unit:
+                message = f"`{form.text}` has no unit; it is taken as seconds"
+                hint = f"write `{form.text}s`"
+                self.found.append(Diagnostic("bare-number", "warning", message, form.span, hint=hint))
+            return form.value
+        return DEFAULT_PERIOD
+
+    def use(self, form: ListForm) -> Use:
+        rest, options = self._split(form.items[1:], None)
+        library = self._name(rest[0], "a library") if self._count("use", form, rest, 1) else ""
+        settings = tuple(
+            Setting(name, self.expression(option.value), _join(option.keyword.span, option.value.span))
+            for name, option in options.items()
+            if option.value
+        )
+        return Use(library, settings, form.span)
+
+    def declaration(self, form: ListForm) -> Declaration:
+        doc, rest = self._without_doc(form.items[1:], 2)
+        if not self._count("declare", form, rest, 2):
+            return Declaration("", (), Type("bool"), doc, form.span)
+        signature = rest[0].items if isinstance(rest[0], ListForm) else (rest[0],)
+        if not signature:
+            self._no_head(rest[0], "a function")
+        name = self._new_name(signature[0], "a function") if signature else ""
+        parameters = tuple(self._parameter(one) for one in signature[1:])
+        self._distinct_parameters(signature[1:], parameters)
+        return Declaration(name, parameters, self._type(rest[1]), doc, form.span)
+
+    def _parameter(self, form: Form) -> tuple[str, Type]:
+        if isinstance(form, ListForm) and len(form.items) == 2:
+            return self._name(form.items[0], "an argument"), self._type(form.items[1])
+        self._unexpected(form, "an argument `(NAME TYPE)`", "wrong-parts")
+        return "", Type("bool")
+
+    def _distinct_parameters(self, forms: Sequence[Form], parameters: Sequence[tuple[str, Type]]) -> None:
+        seen: dict[str, Span] = {}
+        for form, (name, _) in zip(forms, parameters, strict=True):
+            if name and name in seen:
+                self.error("duplicate", f"the argument `{name}` is there twice", form.span, "", _first(seen[name]))
+            seen.setdefault(name, form.span)
+
+    def _type(self, form: Form) -> Type:
+        match form:
+            case Symbol(name=name) if name in TYPES:
+                return Type(name)
+            case Symbol(name=name, span=span):
+                self._unknown_type(name, span)
+            case ListForm(items=(Symbol(name="number"), Symbol(name=unit, span=span))):
+                return self._number_type(unit, span)
+            case _:
+                self._unexpected(form, "a type", "unknown-type", _TYPES_HINT)
+        return Type("bool")
+
+    def _unknown_type(self, name: str, span: Span) -> None:
+        if name in UNITS:
+            self.error("unknown-type", f"`{name}` is a unit, not a type", span, f"write `(number {UNITS[name].si})`")
+        else:
+            meant = close(name, TYPES, shortest=3)
+            hint = f"did you mean `{meant}`? {_TYPES_HINT}" if meant else _TYPES_HINT
+            self.error("unknown-type", f"`{name}` is not a type", span, hint)
+
+    def _number_type(self, unit: str, span: Span) -> Type:
+        if unit in SI_UNITS:
+            return Type("number", unit)
+        hint = f"the units of types: {' '.join(SI_UNITS)}"
+        if unit in UNITS:
+            hint = f"numbers are kept in SI: write `(number {UNITS[unit].si})`"
+        self.error("unknown-unit", f"`{unit}` is not a unit of a type", span, hint)
+        return Type("number")
+
+    def output(self, form: ListForm) -> OutputDeclaration:
+        rest, options = self._split(form.items[1:], ("idle", "hold", "initial"), flags=("hold",))
+        name, kind = "", Type("bool")
+        if self._count("defoutput", form, rest, 2):
+            name, kind = self._new_name(rest[0], "an output"), self._type(rest[1])
+        hold, idle, initial = options.get("hold"), options.get("idle"), options.get("initial")
+        if hold and idle:
+            message = "`:idle` and `:hold` exclude each other"
+            related = (Related("`:hold` is here", hold.keyword.span),)
+            self.error(
+                "bad-option", message, idle.keyword.span, "for a first value of `:hold` write `:initial`", related
+            )
+        if initial and not hold and not idle:
+            self.error("bad-option", "`:initial` goes with `:hold`", initial.keyword.span)
+        elif initial and not hold:
+            self.error("bad-option", "`:initial` goes with `:hold`, not with `:idle`", initial.keyword.span)
+        return OutputDeclaration(name, kind, self._value_of(idle), hold is not None, self._value_of(initial), form.span)
+
+    def _value_of(self, option: _Option | None) -> Expression | None:
+        return self.expression(option.value) if option and option.value else None
+
+    def named_condition(self, form: ListForm) -> NamedCondition:
+        head, doc, rest = self._head_doc_body(form)
+        if not self._count("defcond", form, rest, 2):
+            return NamedCondition("", doc, Truth(False, form.span), form.span)
+        match head:
+            case ListForm(items=(first,)):
+                name = self._new_name(first, "a condition")
+            case ListForm(items=(_, Variable() as second, *_)):
+                self._variable(second)
+                name = ""
+            case ListForm(items=(_, second, *_)):
+                self._unexpected(second, "nothing, for conditions have no parameters", "wrong-parts")
+                name = ""
+            case ListForm():
+                self._no_head(head, "a condition")
+                name = ""
+            case _:
+                name = self._new_name(head, "a condition")
+        return NamedCondition(name, doc, self.condition(rest[1]), form.span)
+
+    def rule(self, form: ListForm) -> Rule:
+        head, doc, rest = self._head_doc_body(form)
+        if not self._count("defgoalr", form, rest, 2):
+            return Rule("ach", "", doc, Anything(form.span), head.span, form.span)
+        kind, name = self._rule_head(head)
+        return Rule(kind, name, doc, self.goal(rest[1], 2), head.span, form.span)
+
+    def _head_doc_body(self, form: ListForm) -> tuple[Form, str, tuple[Form, ...]]:
+        """What a definition defines, its text, and all parts without that text."""
+        rest = form.items[1:]
+        if len(rest) > 2 and isinstance(rest[1], Text):
+            return rest[0], rest[1].value, (rest[0], *rest[2:])
+        return rest[0] if rest else form, "", rest
+
+    def _rule_head(self, form: Form) -> tuple[Kind, str]:
+        match form:
+            case ListForm(items=(Symbol(name="ach" | "maint" as kind), *_)):
+                subgoal = self._subgoal(form, "ach" if kind == "ach" else "maint")
+                return subgoal.kind, subgoal.name
+            case _:
+                hint = "rules are for `(ach NAME)` or `(maint NAME)`"
+                self._unexpected(form, "`(ach NAME)` or `(maint NAME)`", "bad-head", hint)
+                return "ach", ""
+
+    def top_goal(self, form: ListForm) -> TopGoal:
+        head = _head(form) or "goalem"
+        rest = form.items[1:]
+        goal = self.goal(rest[0], 2) if self._count(head, form, rest, 1) else Anything(form.span)
+        return TopGoal(goal, form.span)
+
+    # --- goals ---
+
+    def goal(self, form: Form, level: int) -> Goal:
+        if level > MAX_LEVELS:
+            self.error("too-deep", f"goals nest more than {MAX_LEVELS:,} deep here", form.span)
+            return Anything(form.span)
+        if not isinstance(form, ListForm):
+            return self._no_goal(form)
+        match _head(form):
+            case "do":
+                return self._do(form)
+            case "if":
+                return self._if(form, level)
+            case "when":
+                return self._when(form, level)
+            case "cond":
+                return self._cond(form, level)
+            case "and" | "or" | "prio-and" as joint:
+                return self._joint(form, joint, level)
+            case "ach":
+                return self._subgoal(form, "ach")
+            case "maint":
+                return self._subgoal(form, "maint")
+            case None:
+                self._no_head(form, "a goal", GOAL_FORMS)
+            case str() as head:
+                self._unknown_goal(head, form)
+        return Anything(form.span)
+
+    def _no_goal(self, form: Form) -> Goal:
+        match form:
+            case Symbol(name="anything"):
+                hint = "write `(do anything)`"
+            case Symbol(name=name):
+                hint = f"write `(ach {name})`, `(maint {name})` or `(do OUTPUT {name})`"
+            case _:
+                hint = ""
+        self._unexpected(form, "a goal", "not-a-goal", hint)
+        return Anything(form.span)
+
+    def _unknown_goal(self, head: str, form: ListForm) -> None:
+        if head in TOP_FORMS:
+            message = f"`({head} ...)` stands inside of a goal; it belongs to the top level"
+            self.error("misplaced-form", message, form.span)
+        elif head in CONDITION_FORMS:
+            message = f"`({head} ...)` is a condition; here a goal is expected"
+            self.error("misplaced-form", message, form.span, "conditions are asked with `if`, `when` and `cond`")
+        else:
+            self._unknown(head, form, "goal", GOAL_FORMS)
+
+    def _do(self, form: ListForm) -> Goal:
+        match form.items[1:]:
+            case (Symbol(name="anything"),):
+                return Anything(form.span)
+            case (Symbol(name="anything"), *_):
+                self.error("wrong-parts", "`(do anything)` takes no value", form.span)
+            case (output, value):
+                return Do(self._name(output, "an output"), self.expression(value), form.span)
+            case rest:
+                self._count("do", form, rest, 2)
+        return Anything(form.span)
+
+    def _if(self, form: ListForm, level: int) -> Goal:
+        rest = form.items[1:]
+        if not self._count("if", form, rest, 3):
+            return Anything(form.span)
+        condition = self.condition(rest[0])
+        return If(condition, self.goal(rest[1], level + 1), self.goal(rest[2], level + 1), form.span)
+
+    def _when(self, form: ListForm, level: int) -> Goal:
+        rest = form.items[1:]
+        if not self._count("when", form, rest, 2):
+            return Anything(form.span)
+        return If(self.condition(rest[0]), self.goal(rest[1], level + 1), Anything(form.span), form.span)
+
+    def _cond(self, form: ListForm, level: int) -> Goal:
+        """Nested ifs, each with the place of its clause."""
+        clauses = form.items[1:]
+        if not self._count("cond", form, clauses, 1, None):
+            return Anything(form.span)
+        if level + len(clauses) > MAX_LEVELS:
+            message = f"with the branches of this `cond`, goals nest more than {MAX_LEVELS:,} deep"
+            self.error("too-deep", message, form.span)
+            return Anything(form.span)
+        branches = [self._clause(clause, level + i) for i, clause in enumerate(clauses)]
+        goal: Goal = Anything(form.span)
+        for i, branch in reversed(list(enumerate(branches))):
+            if branch.condition is not None:
+                goal = If(branch.condition, branch.goal, goal, clauses[i].span)
+            elif i == len(branches) - 1:
+                goal = branch.goal
+            else:
+                self.error("misplaced-else", "`else` is not the last clause of its `cond`", clauses[i].span)
+        return goal
+
+    def _clause(self, form: Form, level: int) -> _Branch:
+        match form:
+            case ListForm(items=(Symbol(name="else"), body)):
+                return _Branch(None, self.goal(body, level))
+            case ListForm(items=(condition, body)):
+                return _Branch(self.condition(condition), self.goal(body, level + 1))
+            case ListForm(items=items):
+                parts = len(items)
+                message = f"a clause of `cond` takes a condition and a goal; here {_parts(parts)}"
+                self.error("wrong-parts", message, form.span)
+            case _:
+                self._unexpected(form, "a clause `(CONDITION GOAL)`", "wrong-parts")
+        return _Branch(Truth(False, form.span), Anything(form.span))
+
+    def _joint(self, form: ListForm, head: str, level: int) -> Goal:
+        if len(form.items) == 1:
+            self.error("wrong-parts", f"`{head}` joins one or more goals; here are none", form.span)
+        goals = tuple(self.goal(one, level + 1) for one in form.items[1:])
+        if head == "and":
+            return And(goals, form.span)
+        return Or(goals, form.span) if head == "or" else PrioAnd(goals, form.span)
+
+    def _subgoal(self, form: ListForm, kind: Kind) -> Subgoal:
+        rest = form.items[1:]
+        variable = next((one for one in rest if isinstance(one, Variable)), None)
+        if variable:
+            self._variable(variable)
+            return Subgoal(kind, "", form.span)
+        if len(rest) > 1:
+            message = f"`{kind}` takes the name of a goal; goals have no parameters"
+            self.error("wrong-parts", message, _join(rest[1].span, rest[-1].span))
+            return Subgoal(kind, "", form.span)
+        return Subgoal(kind, self._name(rest[0], "a goal") if self._count(kind, form, rest, 1) else "", form.span)
+
+    # --- conditions and values ---
+
+    def condition(self, form: Form) -> Condition:
+        match form:
+            case Symbol(name="true" | "false" as name):
+                return Truth(name == "true", form.span)
+            case Symbol(name=name) | ListForm(items=(Symbol(name=name), *_)):
+                pass
+            case ListForm():
+                self._no_head(form, "a condition")
+                return Truth(False, form.span)
+            case _:
+                self._unexpected(form, "a condition", "not-a-condition")
+                return Truth(False, form.span)
+        if isinstance(form, ListForm) and name in CONDITION_FORMS:
+            return self._compound(form, name)
+        called = self._call(form, name, "condition")
+        return called if called else Truth(False, form.span)
+
+    def _compound(self, form: ListForm, head: str) -> Condition:
+        rest = form.items[1:]
+        for comparator in COMPARATORS:
+            if head == comparator:
+                return self._compare(form, comparator)
+        if head == "not":
+            return (
+                Not(self.condition(rest[0]), form.span)
+                if self._count("not", form, rest, 1)
+                else Truth(False, form.span)
+            )
+        if not rest:
+            self.error("wrong-parts", f"`{head}` joins one or more conditions; here are none", form.span)
+        conditions = tuple(self.condition(one) for one in rest)
+        return AllOf(conditions, form.span) if head == "and" else AnyOf(conditions, form.span)
+
+    def _compare(self, form: ListForm, comparator: Comparator) -> Condition:
+        rest = form.items[1:]
+        if len(rest) != 2:
+            self.error("wrong-parts", f"`{comparator}` compares two numbers; here {_parts(len(rest))}", form.span)
+            return Truth(False, form.span)
+        return Compare(comparator, self._operand(rest[0]), self._operand(rest[1]), form.span)
+
+    def _operand(self, form: Form) -> Number | Call:
+        match form:
+            case Symbol(name="true" | "false"):
+                hint = "a condition is itself true or false; `(not C)` turns it round"
+                self._unexpected(form, "a number", "not-a-number", hint)
+            case Numeral() | Symbol() | ListForm():
+                value = self.expression(form)
+                if not isinstance(value, Truth):
+                    return value
+            case _:
+                self._unexpected(form, "a number", "not-a-number")
+        return Number(0.0, "", form.span)
+
+    def expression(self, form: Form) -> Expression:
+        match form:
+            case Numeral(value=value, unit=unit):
+                return Number(value, unit, form.span)
+            case Symbol(name="true" | "false" as name):
+                return Truth(name == "true", form.span)
+            case Symbol(name=name) | ListForm(items=(Symbol(name=name), *_)):
+                called = self._call(form, name, "value")
+                return called if called else Truth(False, form.span)
+            case ListForm():
+                self._no_head(form, "a value")
+            case _:
+                self._unexpected(form, "a value", "not-a-value")
+        return Truth(False, form.span)
+
+    def _call(self, form: Form, name: str, wanted: str) -> Call | None:
+        """A call of `name`, None where the name is a word of the language."""
+        if name not in _RESERVED:
+            arguments = form.items[1:] if isinstance(form, ListForm) else ()
+            return Call(name, tuple(self.expression(one) for one in arguments), form.span)
+        known = _known(wanted, CONDITION_FORMS)
+        if name in _MEMORY:
+            self.error("unknown-form", f"`{name}`: conditions with memory are not supported", form.span, known)
+        elif name in _ARITHMETIC:
+            self.error("unknown-form", f"`{name}`: arithmetic is not supported", form.span, known)
+        elif name in _TRUTHS:
+            self.error("misplaced-form", f"`{name}` takes no parentheses", form.span, f"write `{name}`")
+        else:
+            what = _what_is(name)
+            self.error("misplaced-form", f"`{name}` is {what}; here a {wanted} is expected", form.span)
+        return None
+
+    # --- parts ---
+
+    def _split(
+        self, items: Sequence[Form], known: tuple[str, ...] | None, flags: tuple[str, ...] = ()
+    ) -> tuple[tuple[Form, ...], dict[str, _Option]]:
+        """Plain parts and options; known: the keywords that may be (None: any), flags: those without a value."""
+        plain: list[Form] = []
+        options: dict[str, _Option] = {}
+        position = 0
+        while position < len(items):
+            item = items[position]
+            position += 1
+            if not isinstance(item, Keyword):
+                plain.append(item)
+                continue
+            follows = items[position] if position < len(items) else None
+            value = None if item.name in flags or isinstance(follows, Keyword) else follows
+            position += value is not None
+            self._option(_Option(item, value), options, known, flags)
+        return tuple(plain), options
+
+    def _option(
+        self, option: _Option, options: dict[str, _Option], known: tuple[str, ...] | None, flags: tuple[str, ...]
+    ) -> None:
+        keyword = option.keyword
+        if known is not None and keyword.name not in known:
+            meant = close(keyword.name, known, shortest=3)
+            hint = f"did you mean `:{meant}`? " if meant else ""
+            hint += "known here: " + " ".join(f"`:{name}`" for name in known)
+            self.error("unknown-keyword", f"`:{keyword.name}` is not known here", keyword.span, hint)
+        elif keyword.name in options:
+            first = options[keyword.name].keyword.span
+            self.error("duplicate", f"`:{keyword.name}` is there twice", keyword.span, "", _first(first))
+        else:
+            if option.value is None and keyword.name not in flags:
+                self.error("wrong-parts", f"`:{keyword.name}` takes a value; here is none", keyword.span)
+            options[keyword.name] = option
+
+    def _without_doc(self, items: Sequence[Form], at: int) -> tuple[str, tuple[Form, ...]]:
+        """The text that stands after `at` parts, if any, and the rest."""
+        if len(items) > at and isinstance(doc := items[at], Text):
+            return doc.value, (*items[:at], *items[at + 1 :])
+        return "", tuple(items)
+
+    def _count(self, head: str, form: ListForm, rest: Sequence[Form], least: int, most: int | None = -1) -> bool:
+        """Whether there are as many parts as there must be; most: -1 for as many as least, None for any number."""
+        limit = least if most == -1 else most
+        if len(rest) >= least and (limit is None or len(rest) <= limit):
+            return True
+        message = f"`{head}` takes {_TAKES[head]}; here {_parts(len(rest))}"
+        self.error("wrong-parts", message, form.span, _HINTS.get((head, len(rest)), ""))
+        return False
+
+    def _name(self, form: Form, owner: str) -> str:
+        if isinstance(form, Symbol):
+            return form.name
+        self._unexpected(form, f"the name of {owner}", "not-a-name")
+        return ""
+
+    def _new_name(self, form: Form, owner: str) -> str:
+        name = self._name(form, owner)
+        if name in _RESERVED:
+            self.error("reserved-name", f"`{name}` is a word of the language and cannot name {owner}", form.span)
+            return ""
+        return name
+
+    # --- what went wrong ---
+
+    def _unexpected(self, form: Form, wanted: str, code: str, hint: str = "") -> None:
+        """One error that something else was wanted here; none where it has been reported already."""
+        match form:
+            case Broken():
+                pass
+            case Variable():
+                self._variable(form)
+            case _:
+                self.error(code, f"here stands {_describe(form)}, expected is {wanted}", form.span, hint)
+
+    def _variable(self, variable: Variable) -> None:
+        message = f"`?{variable.name}`: pattern variables are not supported"
+        self.error("no-variables", message, variable.span)
+
+    def _no_head(self, form: Form, what: str, known: Sequence[str] = ()) -> None:
+        items = form.items if isinstance(form, ListForm) else ()
+        if items and isinstance(items[0], Broken):
+            return
+        if items and isinstance(items[0], Variable):
+            self._variable(items[0])
+            return
+        hint = _known(what.split()[-1], known) if known else ""
+        message = (
+            f"{what} begins with a name; these parentheses are empty" if not items else f"{what} begins with a name"
+        )
+        self.error("no-head", message, items[0].span if items else form.span, hint)
+
+    def _unknown(self, head: str, form: ListForm, what: str, known: Sequence[str]) -> None:
+        meant = close(head, known, shortest=2)
+        hint = (f"did you mean `{meant}`? " if meant else "") + _known(what, known)
+        self.error("unknown-form", f"`{head}` is not a known {what}", form.items[0].span, hint)
+
+
+@dataclass(frozen=True, slots=True)
+class _Branch:
+    """A clause of `cond`; condition is None for `else`."""
+
+    condition: Condition | None
+    goal: Goal
+
+
+_TYPES_HINT = "the types: bool, (number UNIT), pose, command, symbol"
+
+
+def _head(form: Form) -> str | None:
+    match form:
+        case ListForm(items=(Symbol(name=name), *_)):
+            return name
+        case _:
+            return None
+
+
+def _known(what: str, names: Sequence[str]) -> str:
+    return f"known {what}s: {' '.join(names)}"
+
+
+def _parts(number: int) -> str:
+    return "are none" if number == 0 else "is 1 part" if number == 1 else f"are {number} parts"
+
+
+def _first(span: Span) -> tuple[Related, ...]:
+    return (Related("the first is here", span),)
+
+
+def _join(first: Span, last: Span) -> Span:
+    return Span(first.file, first.line, first.column, last.end_line, last.end_column)
+
+
+def _what_is(name: str) -> str:
+    if name in TOP_FORMS:
+        return "a form of the top level"
+    if name in CONDITION_FORMS:
+        return "a condition"
+    return "a goal" if name in GOAL_FORMS else "a word of the language"
+
+
+def _describe(form: Form) -> str:
+    match form:
+        case Symbol(name=name):
+            return f"the name `{name}`"
+        case Keyword(name=name):
+            return f"the keyword `:{name}`"
+        case Numeral(text=text):
+            return f"the number `{text}`"
+        case Text():
+            return "a text"
+        case ListForm(items=(Symbol(name=name), *_)):
+            return f"`({name} ...)`"
+        case _:
+            return "a list"
+
+
+_NO_SYMBOL = re.compile(r'[\s()";]+')
+_NO_START = re.compile(r"[+-]?\.?[0-9]|[:?]|\|#|#\|")
+
+
+def _name_of_file(file: str) -> str:
+    """The name of a plan without a header: its file's, made a symbol."""
+    name = _NO_SYMBOL.sub("-", PurePath(file).stem) or "plan"
+    return f"plan-{name}" if _NO_START.match(name) else name
