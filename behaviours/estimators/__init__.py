@@ -1,0 +1,1 @@
+"""What lasts: estimators take every reading, whoever drives."""

@@ -1,0 +1,424 @@
+"""The libraries of behaviours that plans may use.
+
+Takes: nothing. Gives: for each library its words, its parameters with defaults, and how it comes to life.
+Leaves alone: who uses them. To add a library, write a function like `_runaway` and name it in `LIBRARIES`.
+
+The defaults are the settings of the find-and-fetch robot of Bonasso, Antonisse and Slack 1992 where that paper prints
+them; the docs of the others say that they are chosen here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from behaviours.competences.fixate import Fixate
+from behaviours.competences.natigation import GazeSettings, Natigate
+from behaviours.competences.runaway import Runaway
+from behaviours.competences.stop import Stop
+from behaviours.cores.circles import CircleSettings
+from behaviours.cores.crossing import CrossingSettings
+from behaviours.cores.ground import GroundSettings
+from behaviours.cores.nat import NatSettings
+from behaviours.cores.runaway import RunawaySettings
+from behaviours.estimators import ir_search, stereo_search
+from behaviours.estimators.danger import Danger
+from behaviours.estimators.donor import DonorMemory, DonorSettings
+from behaviours.estimators.home import Home
+from behaviours.estimators.ir_search import IrSearch, IrSettings
+from behaviours.estimators.latest import Latest
+from behaviours.estimators.navigation import ArrivalSettings, NavigationGoal
+from behaviours.estimators.obstacles import DeadlockSettings, Obstacles
+from behaviours.estimators.stereo_search import StereoSearch, StereoSettings
+from behaviours.interface import Channels, Function, Library, Offer, Parameter, Values, Workshop
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+NAVIGATE = "move-according-to-NaT-plan"
+
+Settings = TypeVar("Settings", bound="DataclassInstance")
+Row = tuple[str, str, str]
+"""field of the settings, SI unit, doc"""
+
+
+def _parameters(defaults: DataclassInstance, *rows: Row) -> tuple[Parameter, ...]:
+    """Number parameters with the defaults of a settings class: `safety_radius` becomes `safety-radius`."""
+    return tuple(
+        Parameter(field.replace("_", "-"), "number", unit, float(getattr(defaults, field)), doc)
+        for field, unit, doc in rows
+    )
+
+
+def _settings(defaults: Settings, parameters: tuple[Parameter, ...], values: Values) -> Settings:
+    """The settings with the values of a plan put in; a count must be whole, every number finite and not negative."""
+    changes: dict[str, Any] = {}
+    for parameter in parameters:
+        field = parameter.name.replace("-", "_")
+        value = float(values.get(parameter.name, parameter.default))
+        if not 0.0 <= value < float("inf"):
+            raise ValueError(f"{parameter.name} must be finite and not negative, not {value}")
+        whole = isinstance(getattr(defaults, field), int)
+        if whole and not (value.is_integer() and value >= 1.0):
+            raise ValueError(f"{parameter.name} must be a whole number from 1 up, not {value}")
+        changes[field] = int(value) if whole else value
+    return replace(defaults, **changes)
+
+
+def _bool(name: str, doc: str) -> Function:
+    return Function(name, "bool", doc)
+
+
+def _command(name: str, doc: str, *actuators: str, reads: tuple[str, ...] = ()) -> Function:
+    return Function(name, "command", doc, actuators=actuators, reads=reads)
+
+
+# --- robot ----------------------------------------------------------------------------------------
+
+
+def _build_robot(values: Values, workshop: Workshop) -> Offer:
+    latest = workshop.share(Latest, Latest)
+    return Offer(
+        percepts={"speed": latest.speed, "time-since-start": latest.time_since_start},
+        competences={"stop": Stop()},
+    )
+
+
+ROBOT = Library(
+    "robot",
+    "What every robot can do.",
+    (
+        Function("speed", "number", "Speed along the drive heading, negative backwards.", unit="m/s"),
+        Function("time-since-start", "number", "Stamp of the latest reading.", unit="s"),
+        _command("stop", "Stand still; the head stays where it is.", "drive"),
+    ),
+    (),
+    _build_robot,
+)
+
+# --- runaway --------------------------------------------------------------------------------------
+
+_RUNAWAY = _parameters(
+    RunawaySettings(),
+    ("safety_radius", "m", "A range below it, measured from the hull, is danger (printed in the paper)."),
+    ("release", "m", "Danger ends this much beyond the safety radius (chosen here)."),
+    ("max_speed", "m/s", "Greatest speed (printed in the paper)."),
+    ("steering_gain", "", "Turn rate per angle, 1/s (chosen here)."),
+    ("max_turn_rate", "rad/s", "Greatest turn rate (chosen here)."),
+    ("min_range", "m", "Shorter ranges count as this, so that no echo outweighs all others (chosen here)."),
+    ("pinch", "", "Below this share of their sum the echoes count as a symmetric pinch (chosen here)."),
+)
+
+
+def _build_runaway(values: Values, workshop: Workshop) -> Offer:
+    settings = _settings(RunawaySettings(), _RUNAWAY, values)
+    danger = workshop.share(Danger, lambda: Danger(settings))
+    return Offer(
+        percepts={"anything-is-too-close": lambda: danger.is_near, "nearest-range": lambda: danger.nearest_range},
+        competences={"move-away-from-danger": Runaway(lambda: danger.echoes, settings)},
+    )
+
+
+RUNAWAY = Library(
+    "runaway",
+    "Away from what is suddenly close, forward or backward, whichever is quicker.",
+    (
+        _bool("anything-is-too-close", "An echo of either ring lies within the safety radius."),
+        Function("nearest-range", "number", "The shortest range of both rings, from the hull.", unit="m"),
+        _command("move-away-from-danger", "Drive away from the echoes within the safety radius.", "drive"),
+    ),
+    _RUNAWAY,
+    _build_runaway,
+)
+
+# --- natigation -----------------------------------------------------------------------------------
+
+_ARRIVAL = _parameters(
+    ArrivalSettings(),
+    (
+        "goal_tolerance",
+        "m",
+        "The goal counts as reached this near to it when something stands before it (paper: 1.5 ft).",
+    ),
+    ("arrival", "m", "The goal counts as reached this near to it in any case (chosen here)."),
+    ("leave", "m", "A reached goal is left this much beyond the goal tolerance (chosen here)."),
+    ("stand_off", "m", "Something nearer to the hull than this stands before the goal (chosen here)."),
+    ("stand_off_angle", "rad", "Half the angle about the goal's direction that is watched for it (chosen here)."),
+    ("same_goal", "m", "A goal that moves by more is another goal (chosen here)."),
+)
+_CIRCLES = _parameters(
+    CircleSettings(),
+    ("obstacles", "", "Greatest number of obstacle circles (printed in the paper)."),
+    ("readings", "", "Readings a circle holds, one a sweep; each lives as many sweeps (printed in the paper)."),
+    ("far", "m", "Echoes beyond are not aggregated (chosen here)."),
+    ("max_radius", "m", "No reading is added that makes a circle larger (chosen here)."),
+    ("pad", "m", "Added to the radius of every circle (chosen here)."),
+)
+_NAT = _parameters(
+    NatSettings(),
+    ("robot_width", "m", "Diameter of the hull."),
+    ("clearance", "m", "Kept to obstacles; more than the safety radius of runaway (chosen here)."),
+    (
+        "group_margin",
+        "m",
+        "Kept on either side in a gap; the gap is then wider than twice the safety radius (chosen here).",
+    ),
+    ("group_hysteresis", "m", "A group is parted only by a gap so much wider (chosen here)."),
+    ("spin_hysteresis", "", "A spin is kept unless the other side deviates by less than this share (chosen here)."),
+    ("look_ahead", "m", "Groups beyond do not bound the heading (chosen here)."),
+    ("max_speed", "m/s", "Greatest speed (printed in the paper)."),
+    ("stop_distance", "m", "Least speed at this range of the nearest echo (chosen here)."),
+    ("slow_distance", "m", "Full speed from this range of the nearest echo (chosen here)."),
+    ("least_speed", "", "Share of the greatest speed that is kept near obstacles (chosen here)."),
+    ("steering_gain", "", "Turn rate per heading error, 1/s (chosen here)."),
+    ("max_turn_rate", "rad/s", "Greatest turn rate (chosen here)."),
+)
+_DEADLOCK = _parameters(
+    DeadlockSettings(),
+    ("progress", "m", "A robot that does not leave a circle of this radius makes no progress (chosen here)."),
+    ("patience", "s", "Without progress for this long, a group is passed on the other side (chosen here)."),
+    ("lock", "s", "For this long it is kept to that side (chosen here)."),
+    ("new_goal", "m", "A goal that jumps by more is planned for without the spins of before (chosen here)."),
+)
+_GAZE = _parameters(
+    GazeSettings(),
+    ("gaze_beyond", "m", "The head looks this far past the goal, in the direction of the goal pose (chosen here)."),
+    ("pan_step", "rad", "The head is moved by no less, so that it settles (chosen here)."),
+    ("pan_limit", "rad", "Greatest pan to either side (chosen here)."),
+)
+
+
+def _build_natigation(values: Values, workshop: Workshop) -> Offer:
+    arrival = _settings(ArrivalSettings(), _ARRIVAL, values)
+    nat = _settings(NatSettings(), _NAT, values)
+    circles = _settings(CircleSettings(), _CIRCLES, values)
+    deadlock = _settings(DeadlockSettings(), _DEADLOCK, values)
+    goal = _share(workshop, NavigationGoal, lambda: NavigationGoal(arrival), arrival, "natigation")
+    obstacles = workshop.share(Obstacles, lambda: Obstacles(circles, nat, deadlock, NAVIGATE))
+    natigate = Natigate(obstacles.plan_to, nat, _settings(GazeSettings(), _GAZE, values))
+    return Offer(
+        percepts={"there-is-a-goal": goal.exists, "we-are-at-the-goal": lambda: goal.is_reached},
+        competences={NAVIGATE: natigate},
+    )
+
+
+NATIGATION = Library(
+    "natigation",
+    "To the goal among obstacles by navigation templates.",
+    (
+        _bool("there-is-a-goal", "The channel `goal` had a value in the last tick."),
+        _bool("we-are-at-the-goal", "The robot stands at the goal of the last tick."),
+        _command(NAVIGATE, "Drive towards the channel `goal` among the obstacles.", "drive", "head", reads=("goal",)),
+    ),
+    _ARRIVAL + _CIRCLES + _NAT + _DEADLOCK + _GAZE,
+    _build_natigation,
+)
+
+# --- the searches ---------------------------------------------------------------------------------
+
+_IR = _parameters(
+    IrSettings(),
+    ("sweep", "rad", "The head sweeps so far to either side (chosen here)."),
+    ("step", "rad", "From fixation to fixation (chosen here)."),
+    ("pan_tolerance", "rad", "A fixation counts this near to where it was to look (chosen here)."),
+    ("fixation_timeout", "s", "Longest wait for a fixation (chosen here)."),
+    ("misses", "", "Fixations without an answer after which the search fails (chosen here)."),
+)
+_CROSSING = _parameters(
+    CrossingSettings(),
+    ("side", "", "Least number of fixations on either side of the plus-to-minus change (chosen here)."),
+    ("max_spread", "rad", "Greatest deviation of the fixations from a line (paper: the result is within 2 degrees)."),
+    ("max_slope_error", "", "Greatest deviation of that line's slope from -1 (chosen here)."),
+)
+
+
+def _share_ir(workshop: Workshop, values: Values) -> IrSearch:
+    crossing = _settings(CrossingSettings(), _CROSSING, values)
+    settings = replace(_settings(IrSettings(), _IR, values), crossing=crossing)
+    return _share(workshop, IrSearch, lambda: IrSearch(settings), settings, "ir-search")
+
+
+def _build_ir_search(values: Values, workshop: Workshop) -> Offer:
+    search = _share_ir(workshop, values)
+    return Offer(
+        percepts={
+            "ir-search-has-been-started": search.is_running,
+            "the-ir-search-is-finished": search.is_finished,
+            "the-returned-angle-is-no-good": search.is_no_good,
+            "we-know-the-donor-direction": search.knows_direction,
+        },
+        competences={
+            ir_search.START: Fixate(search.first_look, dict),
+            ir_search.CONTINUE: Fixate(search.look, search.progress),
+        },
+    )
+
+
+IR_SEARCH = Library(
+    "ir-search",
+    "The direction of the donor's infra-red beacon, by a sweep of the head while standing.",
+    (
+        _bool("ir-search-has-been-started", "A sweep is going on."),
+        _bool("the-ir-search-is-finished", "The last sweep came to its end."),
+        _bool("the-returned-angle-is-no-good", "It came to its end without a direction."),
+        _bool("we-know-the-donor-direction", "A direction was found, and nothing has spoken against it since."),
+        _command(ir_search.START, "Begin a sweep from scratch.", "drive", "head"),
+        _command(ir_search.CONTINUE, "Go on with the sweep.", "drive", "head"),
+    ),
+    _IR + _CROSSING,
+    _build_ir_search,
+)
+
+_GROUND = _parameters(
+    GroundSettings(),
+    ("start", "m", "Ground distance of the first fixations (paper: six feet)."),
+    ("cut_off", "m", "What stands beyond is no good (paper: 23 to 25 feet)."),
+    ("reach", "m", "Rays meet the ground up to here, so that what stands before the cut-off is told (chosen here)."),
+    ("object_height", "m", "Least height of an object, which makes the step of the tilt (chosen here)."),
+    ("pan_span", "rad", "The pans cover the bearing so far to either side (paper: 2 degrees)."),
+    ("pans", "", "Fixations of a row (chosen here)."),
+    ("error_linear", "", "Standard deviation of a range, share of the range (chosen here)."),
+    ("error_square", "", "Standard deviation of a range, share of its square, 1/m (chosen here)."),
+    ("error_factor", "", "A discontinuity is more than so many standard deviations (chosen here)."),
+)
+_STEREO = _parameters(
+    StereoSettings(),
+    ("camera_height", "m", "Until a reading tells it."),
+    ("angle_tolerance", "rad", "A fixation counts this near to where it was to look (chosen here)."),
+    ("looks", "", "Fixations at one place that must agree on a discontinuity (chosen here)."),
+    ("fixation_timeout", "s", "Longest wait for a fixation; then the head is freed (chosen here)."),
+    ("unsticks", "", "Attempts to free the head before the search fails (chosen here)."),
+    ("unstick_time", "s", "For so long it looks level to free itself (chosen here)."),
+)
+
+
+def _share_stereo(workshop: Workshop, values: Values) -> StereoSearch:
+    ground = _settings(GroundSettings(), _GROUND, values)
+    settings = replace(_settings(StereoSettings(), _STEREO, values), ground=ground)
+    if not settings.camera_height > ground.object_height > 0.0:
+        raise ValueError("object-height must be more than 0 and less than camera-height")
+    ir = workshop.share(IrSearch, lambda: IrSearch(IrSettings()))
+
+    def bearing() -> float | None:
+        return None if ir.direction is None else ir.direction.bearing
+
+    return _share(workshop, StereoSearch, lambda: StereoSearch(settings, bearing), settings, "stereo-search")
+
+
+def _build_stereo_search(values: Values, workshop: Workshop) -> Offer:
+    search = _share_stereo(workshop, values)
+    return Offer(
+        percepts={
+            "stereo-ranging-is-started": search.is_started,
+            "a-range-value-has-been-returned": search.is_finished,
+            "the-range-value-is-no-good": search.is_no_good,
+        },
+        competences={
+            stereo_search.START: Fixate(search.first_look, dict),
+            stereo_search.CONTINUE: Fixate(search.look, search.progress),
+        },
+    )
+
+
+STEREO_SEARCH = Library(
+    "stereo-search",
+    "The distance of what stands in the donor's direction, by stereo ranging along the ground while standing.",
+    (
+        _bool("stereo-ranging-is-started", "A search is going on or has come to its end."),
+        _bool("a-range-value-has-been-returned", "The search has come to its end."),
+        _bool("the-range-value-is-no-good", "It has come to its end without a range within the cut-off."),
+        _command(stereo_search.START, "Begin a search from scratch.", "drive", "head"),
+        _command(stereo_search.CONTINUE, "Go on with the search.", "drive", "head"),
+    ),
+    _GROUND + _STEREO,
+    _build_stereo_search,
+)
+
+# --- find and fetch -------------------------------------------------------------------------------
+
+_DONOR = _parameters(
+    DonorSettings(),
+    ("docking_distance", "m", "From the robot's middle to the donor's front when docked (chosen here)."),
+    (
+        "patience",
+        "s",
+        "Waiting for the object longer than this, the robot takes the place for the wrong one (chosen here).",
+    ),
+    ("moved_angle", "rad", "Later bearings that differ by more say that the donor has moved (chosen here)."),
+    ("moved_distance", "m", "They must also differ by more than this sideways (chosen here)."),
+    ("moved_readings", "", "So many bearings in a row must say so (chosen here)."),
+    ("watch_beyond", "m", "Nearer than this to the donor, bearings say nothing (chosen here)."),
+    ("watch_turn_rate", "rad/s", "Bearings taken while turning faster are not counted (chosen here)."),
+    (
+        "direction_holds_within",
+        "m",
+        "Driven off by more before the range is known, the direction is lost (chosen here).",
+    ),
+    ("stereo_attempts", "", "Failed stereo searches in one direction before it is given up (chosen here)."),
+)
+
+
+def _build_find_and_fetch(values: Values, workshop: Workshop) -> Offer:
+    settings = _settings(DonorSettings(), _DONOR, values)
+    ir = workshop.share(IrSearch, lambda: _share_ir(workshop, {}))
+    stereo = workshop.share(StereoSearch, lambda: _share_stereo(workshop, {}))
+    goal = workshop.share(NavigationGoal, lambda: NavigationGoal(ArrivalSettings()))
+    donor = workshop.share(DonorMemory, lambda: DonorMemory(settings, ir, stereo, goal))
+    home, latest = workshop.share(Home, Home), workshop.share(Latest, Latest)
+    return Offer(
+        percepts={
+            "donor-has-been-located": donor.is_located,
+            "we-already-have-the-widget": latest.object_on_board,
+        },
+        values={
+            "the-robots-home-position": lambda channels: home.pose,
+            "set-goal-as-the-donors-location": lambda channels: donor.docking_pose(),
+            "remember-the-current-goal-if-any": _current_goal,
+        },
+    )
+
+
+def _current_goal(channels: Channels) -> object:
+    return channels.get("goal")
+
+
+FIND_AND_FETCH = Library(
+    "find-and-fetch",
+    "Where the donor is and where home is. Use ir-search, stereo-search and natigation before it.",
+    (
+        _bool("donor-has-been-located", "Its place is known, and nothing has spoken against it since."),
+        _bool("we-already-have-the-widget", "The donor's object lies on the platform."),
+        Function("the-robots-home-position", "pose", "The pose of the first reading."),
+        Function(
+            "set-goal-as-the-donors-location", "pose", "Before the donor, looking at it; no goal while not located."
+        ),
+        Function("remember-the-current-goal-if-any", "pose", "The goal of the last tick.", reads=("goal",)),
+    ),
+    _DONOR,
+    _build_find_and_fetch,
+)
+
+# --------------------------------------------------------------------------------------------------
+
+Shared = TypeVar("Shared", IrSearch, StereoSearch, NavigationGoal)
+
+
+def _share(workshop: Workshop, kind: type[Shared], make: Callable[[], Shared], settings: object, name: str) -> Shared:
+    """The shared estimator with these settings; another library may have made it with others already."""
+    shared = workshop.share(kind, make)
+    if shared.settings != settings:
+        raise ValueError(f"use {name} before the libraries that build on it: they took it with other parameters")
+    return shared
+
+
+LIBRARIES: Mapping[str, Library] = MappingProxyType(
+    {item.name: item for item in (ROBOT, RUNAWAY, NATIGATION, IR_SEARCH, STEREO_SEARCH, FIND_AND_FETCH)}
+)
+"""Every library, by name."""
+
+
+def library(name: str) -> Library:
+    """The library of this name. Raises KeyError where there is none."""
+    return LIBRARIES[name]

@@ -1,0 +1,98 @@
+"""Obstacles around the robot, and the side on which each is passed.
+
+Takes: every fresh sweep of the waist ring, odometry, last tick's `goal`. Gives: circles, and the plan towards a goal.
+Leaves alone: driving. It goes on whoever drives, so that a plan survives a tick of running away.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from behaviours.cores.circles import Circles, CircleSettings, perceive
+from behaviours.cores.geometry import distance, echo
+from behaviours.cores.nat import Memory, NatPlan, NatSettings, contradicted, make_plan, opposite
+from behaviours.estimators.navigation import as_goal
+from behaviours.interface import Channels, Pose, Ranges, Reading, Report
+
+
+@dataclass(frozen=True, slots=True)
+class DeadlockSettings:
+    """A robot that has not left a circle of `progress` [m] within `patience` [s] of driving passes a group on the other
+    side, and keeps to that for `lock` [s]. A goal that jumps by more than `new_goal` [m] is planned for anew."""
+
+    progress: float = 0.3
+    patience: float = 15.0
+    lock: float = 10.0
+    new_goal: float = 0.5
+
+
+class Obstacles:
+    """The circles, and the latest plan among them. driver: the competence whose lack of progress counts."""
+
+    def __init__(self, circles: CircleSettings, nat: NatSettings, deadlock: DeadlockSettings, driver: str) -> None:
+        self.settings = (circles, nat, deadlock)
+        self.memory = Circles()
+        self.plan: NatPlan | None = None
+        self._spins: Memory = {}
+        self._driver = driver
+        self._since: tuple[float, Pose] | None = None
+
+    def update(self, reading: Reading, reports: Mapping[str, Report], channels: Channels) -> None:
+        pose = reading.odometry.pose
+        sonar = reading.sonar
+        fresh = sonar is not None and sonar.fresh
+        if sonar is not None and fresh:
+            self.memory = perceive(self.memory, echoes_of(sonar, pose), self.settings[0])
+        goal = as_goal(channels)
+        if goal is None:
+            self._forget_plan()
+        elif fresh or self.plan is None or self.plan.goal != goal:
+            self._replan(pose, goal, reading.stamp)
+        self._mind_progress(reading, self._driver in reports and goal is not None)
+
+    def plan_to(self, pose: Pose, goal: Pose, now: float) -> NatPlan:
+        """The plan from the robot to the goal at stamp now [s]: the latest one if that is its goal."""
+        if self.plan is not None and self.plan.goal == goal:
+            return self.plan
+        return self._make(pose, goal, now)
+
+    def _make(self, pose: Pose, goal: Pose, now: float) -> NatPlan:
+        same = self.plan is not None and distance(self.plan.goal, goal) <= self.settings[2].new_goal
+        links = self.plan.links if self.plan is not None else frozenset()
+        return make_plan(self.memory.circles, pose, goal, links, self._spins if same else {}, now, self.settings[1])
+
+    def _replan(self, pose: Pose, goal: Pose, now: float) -> None:
+        self.plan = self._make(pose, goal, now)
+        self._spins = self.plan.spins()
+
+    def _forget_plan(self) -> None:
+        self.plan = None
+        self._spins = {}
+
+    def _mind_progress(self, reading: Reading, driving: bool) -> None:
+        settings = self.settings[2]
+        pose = reading.odometry.pose
+        if not driving:
+            self._since = None
+        elif self._since is None or distance(self._since[1], pose) > settings.progress:
+            self._since = (reading.stamp, pose)
+        elif reading.stamp - self._since[0] > settings.patience:
+            self._since = (reading.stamp, pose)
+            self._turn_about(reading)
+
+    def _turn_about(self, reading: Reading) -> None:
+        group = contradicted(self.plan, self.settings[1]) if self.plan is not None else None
+        if self.plan is not None and group is not None:
+            locked = (opposite(group.spin), reading.stamp + self.settings[2].lock)
+            self._spins = {**self._spins, **dict.fromkeys(group.idents, locked)}
+            self._replan(reading.odometry.pose, self.plan.goal, reading.stamp)
+
+
+def echoes_of(ring: Ranges, pose: Pose) -> list[tuple[float, tuple[float, float]]]:
+    """(range [m], point in the frame of the pose) of every transducer that heard something."""
+    return [
+        (r, echo(pose, b, ring.mount_radius + r))
+        for r, b in zip(ring.ranges.tolist(), ring.bearings.tolist(), strict=True)
+        if r < ring.max_range
+    ]
