@@ -1,7 +1,7 @@
 """Looks at the replay page in a browser: `python tests/benchmarks/look_replay.py OUT_DIR [RUN.mcap]`.
 
 Takes: a folder for pictures and, if given, a recording; else it makes one of twelve minutes that has everything in it.
-Gives: the page, pictures of it (laptop, phone, dark), its size and costs, and exit code 1 where the page reports a fault.
+Gives: the page, pictures of it (laptop, phone, dark), its size and costs; exit code 1 where the page reports a fault.
 Leaves alone: the tests, which need no browser. Chromium must be installed: its absence is an error here, not a skip.
 """
 
@@ -80,9 +80,10 @@ PLAN = """\
                        (ach retrieve-widget-from-donor))
              (ach move-to-goal)))
 """
-INPUTS = """anything-is-too-close there-is-a-goal we-are-at-the-goal donor-has-been-located we-already-have-the-widget
+ASKED = """anything-is-too-close there-is-a-goal we-are-at-the-goal donor-has-been-located we-already-have-the-widget
 we-know-the-donor-direction ir-search-has-been-started the-ir-search-is-finished the-returned-angle-is-no-good
-stereo-ranging-is-started a-range-value-has-been-returned the-range-value-is-no-good""".split()
+stereo-ranging-is-started a-range-value-has-been-returned the-range-value-is-no-good"""
+INPUTS = ASKED.split()
 HOME, DONOR = (-8.0, -4.0, 0.4), (7.0, 3.6, 3.4)
 CIRCLES = {
     "trashcan 1": (-2.0, 0.2, 0.3),
@@ -232,8 +233,9 @@ class Script:
         world["contacts"] = [{"thing": "trashcan 1", "driven_into": True}] if 471 < t < 471.5 else []
         world["head"] = [pan, tilt]
         if tick % 3 == 0:
+            ranges = _sonar(x, y, theta, self.obstacles)
             noise = 0.01 * self.rng.standard_normal(30)
-            world["sonar"] = [r if r >= 6 else r + float(n) for r, n in zip(_sonar(x, y, theta, self.obstacles), noise)]
+            world["sonar"] = [r if r >= 6 else r + float(n) for r, n in zip(ranges, noise, strict=True)]
         if t < 90 and tick % 5 == 0:
             seen = abs(pan - 0.75) < 0.2
             world["ir"] = {"detected": seen, "offset": 0.75 - pan if seen else math.nan, "strength": 4.2, "pan": pan}
@@ -284,7 +286,7 @@ class Script:
                     "output": "goal",
                     "value": goal,
                     "rule": rules[-1],
-                    "line": _line(f"(do goal {goal[:6]}") if 0 else _line("(do goal (set"),
+                    "line": _line("(do goal the-robots" if self.on_board else "(do goal (set"),
                 }
             )
             branches.append(_branch("(we-already-have-the-widget)", self.on_board, rules[-1], "(if (we-already"))
@@ -366,10 +368,14 @@ def main() -> int:
         "search": ("1280,800", "#t=40"),
         "follow": ("1280,800", "?theme=dark#t=250&follow=1"),
         "end": ("1280,800", "#t=719"),
-        "phone": ("500,2200", "#t=205"),
     }
     for name, (size, where) in shots.items():
         browse(url + where, f"--window-size={size}", f"--screenshot={out / name}.png")
+    for name, where, height in (("phone", "#t=205", 844), ("phone-all", "?theme=dark#t=215.5", 2300)):
+        inside = f'<iframe src="{url}{where}" width="390" height="{height}" style="border:0"></iframe>'
+        frame = out / f"{name}.html"  # a window is never so narrow: a frame in it is
+        frame.write_text(f'<body style="margin:0">{inside}', encoding="utf-8")
+        browse(frame.resolve().as_uri(), f"--window-size=500,{height}", f"--screenshot={out / name}.png")
     dom = browse(url + "#t=205", "--dump-dom")
     ready = dom.split('data-ready="', 1)[-1].split('"', 1)[0] if 'data-ready="' in dom else ""
     print(f"ready after {ready} ms" if ready else "the page did not get ready")
