@@ -1,0 +1,44 @@
+"""Poses and angles: from one frame to another, and from degrees and feet to SI.
+
+Takes and gives: plain numbers and `Pose`. Leaves alone: time and chance.
+"""
+
+from __future__ import annotations
+
+import math
+
+from behaviours.interface import Pose, Vec2, wrap
+
+FOOT = 0.3048
+
+
+def from_body(p_WB: Pose, point: Vec2) -> Vec2:
+    """The point [m] of the body frame, seen in the world."""
+    c, s = math.cos(p_WB.theta), math.sin(p_WB.theta)
+    return p_WB.x + c * point[0] - s * point[1], p_WB.y + s * point[0] + c * point[1]
+
+
+def into_body(p_WB: Pose, point: Vec2) -> Vec2:
+    """The point [m] of the world, seen in the body frame."""
+    c, s = math.cos(p_WB.theta), math.sin(p_WB.theta)
+    dx, dy = point[0] - p_WB.x, point[1] - p_WB.y
+    return c * dx + s * dy, c * dy - s * dx
+
+
+def bearing(p_WB: Pose, point: Vec2) -> float:
+    """Angle [rad] of the world point in the body frame, left positive."""
+    return wrap(math.atan2(point[1] - p_WB.y, point[0] - p_WB.x) - p_WB.theta)
+
+
+def approach(value: float, target: float, step: float) -> float:
+    """`value` moved towards `target` by at most `step` >= 0."""
+    return min(target, value + step) if target > value else max(target, value - step)
+
+
+def distance_to_segment(point: Vec2, a: Vec2, b: Vec2) -> float:
+    """Distance [m] of the point from the straight piece between a and b."""
+    ux, uy = b[0] - a[0], b[1] - a[1]
+    length2 = ux * ux + uy * uy
+    along = 0.0 if length2 == 0 else ((point[0] - a[0]) * ux + (point[1] - a[1]) * uy) / length2
+    along = min(1.0, max(0.0, along))
+    return math.hypot(point[0] - a[0] - along * ux, point[1] - a[1] - along * uy)

@@ -1,0 +1,152 @@
+"""Whether the object was fetched, how long it took, and what was touched on the way.
+
+Takes: the world after each tick (the truth, not what the robot believes). Gives: the stage now, and a `Verdict`.
+Leaves alone: how the robot did it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from sim.world import TICK, Touch, World
+
+Stage = Literal["to the donor", "hand-over", "return", "done"]
+HOME, AT_START = 1.0, 0.3  # [m] from the start: what counts as back, and as not yet gone
+STILL = 1.0  # [s] to stand at home
+ONE_CONTACT = 1.0  # [s] within which touches of one thing are one contact
+
+PHRASES: dict[Stage, str] = {
+    "to the donor": "on the way to the donor",
+    "hand-over": "during the hand-over",
+    "return": "on the way back",
+    "done": "when all was done",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Times:
+    """Moments [s]; None for what has not happened.
+
+    departure: the last one within 0.3 m of home before arrival; arrival: standing within the donor's reach for the
+    first time; loaded: the object is on board; home: standing at home with it for a second.
+    """
+
+    departure: float | None = None
+    arrival: float | None = None
+    loaded: float | None = None
+    home: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What is to be said of a run. duration [s]; distance [m] driven; smallest_clearance [m] from the hull, truly.
+
+    reason: in words, why it is not done; empty when it is.
+    """
+
+    done: bool
+    reason: str
+    stage: Stage
+    times: Times
+    duration: float
+    distance: float
+    contacts: tuple[Touch, ...]
+    smallest_clearance: float
+
+    @property
+    def one_way(self) -> float | None:
+        """From departure to arrival [s]."""
+        return _between(self.times.departure, self.times.arrival)
+
+    @property
+    def round_trip(self) -> float | None:
+        """From departure to home [s]."""
+        return _between(self.times.departure, self.times.home)
+
+    @property
+    def driven_into(self) -> int:
+        """How often the robot drove into something."""
+        return sum(touch.driven_into for touch in self.contacts)
+
+
+def _between(start: float | None, end: float | None) -> float | None:
+    return None if start is None or end is None else end - start
+
+
+class Judge:
+    """Watches a run. `observe` is called after each tick of the world."""
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        self._place = world.robot.pose
+        self._departure = 0.0
+        self._arrival: float | None = None
+        self._loaded: float | None = None
+        self._home: float | None = None
+        self._home_for = 0.0
+        self._distance = 0.0
+        self._clearance = world.clearance()
+        self._contacts: list[Touch] = []
+        self._last_touch: dict[str, float] = {}
+        self._in_reach = False
+
+    @property
+    def done(self) -> bool:
+        """Whether the object has been fetched."""
+        return self._home is not None
+
+    @property
+    def stage(self) -> Stage:
+        """Where the task stands now."""
+        if self.done:
+            return "done"
+        if self._loaded is not None:
+            return "return"
+        return "hand-over" if self._in_reach else "to the donor"
+
+    def observe(self) -> None:
+        """Take the world as it is now."""
+        world = self._world
+        pose = world.robot.pose
+        self._distance += ((pose.x - self._place.x) ** 2 + (pose.y - self._place.y) ** 2) ** 0.5
+        self._place = pose
+        self._clearance = min(self._clearance, world.clearance())
+        self._watch_times(world)
+        self._watch_contacts(world)
+
+    def _watch_times(self, world: World) -> None:
+        home, standing = world.home_distance, world.robot.standing
+        self._in_reach = standing and world.donor_gap <= world.hand_over.reach
+        if self._arrival is None and home <= AT_START:
+            self._departure = world.time
+        if self._arrival is None and self._in_reach:
+            self._arrival = world.time
+        if self._loaded is None and world.hand_over.on_board:
+            self._loaded = world.time
+        back = self._loaded is not None and standing and home <= HOME
+        self._home_for = self._home_for + TICK if back else 0.0
+        if self._home is None and self._home_for >= STILL - TICK / 2:
+            self._home = world.time
+
+    def _watch_contacts(self, world: World) -> None:
+        for touch in world.begun:
+            if touch.time - self._last_touch.get(touch.thing, -ONE_CONTACT) >= ONE_CONTACT:
+                self._contacts.append(touch)
+        for touch in (*world.begun, *world.touches):
+            self._last_touch[touch.thing] = world.time
+
+    def verdict(self, stopped: str = "") -> Verdict:
+        """What is to be said now. stopped: why the run ended, if not because it was done or out of time."""
+        time = self._world.time
+        why = stopped or f"out of time at {time:.0f} s"
+        return Verdict(
+            done=self.done,
+            reason="" if self.done else f"{why} {PHRASES[self.stage]}",
+            stage=self.stage,
+            times=Times(None if self._arrival is None else self._departure, self._arrival, self._loaded, self._home),
+            duration=time,
+            distance=self._distance,
+            contacts=tuple(self._contacts),
+            smallest_clearance=self._clearance,
+        )

@@ -1,0 +1,146 @@
+"""What a seed makes of a scenario: where everything stands.
+
+Takes: a scenario and chance. Gives: a `Layout` without anything left to chance.
+Leaves alone: motion (triggers and tracks go into the layout as they are).
+
+Scattered things are drawn at random and kept if they are far enough from everything else, from the strips to keep
+clear, and from the tracks of what moves; if the room does not suffice they are all drawn anew, a hundred times.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from numpy.random import Generator
+
+from behaviours.interface import Pose, Vec2, wrap
+from sim.frames import distance_to_segment
+from sim.raycast import Circle, Outline, Polygon, reach
+from sim.scenarios.scenario import SCATTERED, Amount, Between, KeepClear, Place, Scatter, Scenario, ThingSpec
+from sim.scenarios.schema import Problem, ScenarioError
+from sim.things.thing import Placed, Travel
+
+DONOR = "donor"
+ATTEMPTS, DRAWS = 100, 200
+Strip = tuple[Vec2, Vec2, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """Where everything stands at the start; the first of the things is the donor."""
+
+    start: Pose
+    things: tuple[Placed, ...]
+
+
+def lay_out(scenario: Scenario, chance: Generator) -> Layout:
+    """Draw what the scenario leaves open. Raises ScenarioError where scattered things find no room."""
+    start = Pose(*scenario.robot.start, wrap(_drawn(scenario.robot.heading, chance)))
+    things = [_donor(scenario)]
+    for spec in scenario.things:
+        there, heading = chance.random() < spec.present, _drawn(spec.heading, chance)
+        if there:
+            things.append(_placed(spec, spec.at, heading, things))
+    for scatter in scenario.scatter:
+        things += _scattered(scatter, scenario, things, chance)
+    return Layout(start, tuple(things))
+
+
+def _drawn(amount: Amount, chance: Generator) -> float:
+    match amount:
+        case Between(low, high):
+            return float(chance.uniform(low, high))
+        case _:
+            return amount
+
+
+def _donor(scenario: Scenario) -> Placed:
+    spec = scenario.donor
+    return Placed(DONOR, DONOR, Circle(spec.radius), Pose(*spec.at, 0.0), spec.height, motion=spec.move)
+
+
+def _placed(spec: ThingSpec, at: Vec2, heading: float, before: list[Placed]) -> Placed:
+    number = 1 + sum(thing.kind == spec.kind for thing in before)
+    name = spec.id or f"{spec.kind}-{number}"
+    return Placed(name, spec.kind, spec.outline, Pose(*at, wrap(heading)), spec.height, spec.mass, spec.motion)
+
+
+def _scattered(scatter: Scatter, scenario: Scenario, before: list[Placed], chance: Generator) -> list[Placed]:
+    strips = [*_strips(scatter.keep_clear, scenario), *_lanes(before)]
+    robot = Placed("robot", "robot", Circle(scenario.robot.build.radius), Pose(*scenario.robot.start), 1.0)
+    for _ in range(ATTEMPTS):
+        count = int(chance.integers(scatter.count[0], scatter.count[1] + 1))
+        new: list[Placed] = []
+        while len(new) < count and (one := _one(scatter, strips, [robot, *before, *new], chance)):
+            new.append(one)
+        if len(new) == count:
+            return new
+    message = (
+        f"no room for {count} scattered things in {list(scatter.region)}: make the region wider or min_gap smaller"
+    )
+    raise ScenarioError([Problem(scenario.name, 1, 1, "scatter", message)])
+
+
+def _one(scatter: Scatter, strips: list[Strip], others: list[Placed], chance: Generator) -> Placed | None:
+    spec = SCATTERED[scatter.kinds[int(chance.integers(len(scatter.kinds)))]]
+    xmin, ymin, xmax, ymax = scatter.region
+    for _ in range(DRAWS):
+        at = float(chance.uniform(xmin, xmax)), float(chance.uniform(ymin, ymax))
+        radius = reach(spec.outline)
+        if all(distance_to_segment(at, a, b) >= by + radius for a, b, by in strips) and all(
+            distance(at, other.outline, other.pose) - radius >= scatter.min_gap for other in others
+        ):
+            return _placed(spec, at, 0.0, others)
+    return None
+
+
+def _strips(keep_clear: tuple[KeepClear, ...], scenario: Scenario) -> Iterator[Strip]:
+    for strip in keep_clear:
+        yield _point(strip.start, scenario), _point(strip.end, scenario), strip.by
+
+
+def _point(place: Place, scenario: Scenario) -> Vec2:
+    match place:
+        case "robot":
+            return scenario.robot.start
+        case "donor":
+            return scenario.donor.at
+        case (x, y):
+            return float(x), float(y)
+    raise ValueError(f"no such place: {place!r}")
+
+
+def _lanes(things: list[Placed]) -> Iterator[Strip]:
+    """The tracks of what travels, as wide as it is."""
+    for thing in things:
+        if isinstance(thing.motion, Travel):
+            track, half_width = thing.motion.track, _half_width(thing.outline)
+            ends = track if thing.motion.then == "loop" else track[:-1]
+            for index, a in enumerate(ends):
+                b = track[(index + 1) % len(track)]
+                yield (a.x, a.y), (b.x, b.y), half_width
+
+
+def _half_width(outline: Outline) -> float:
+    match outline:
+        case Circle(radius):
+            return radius
+        case Polygon(vertices):
+            return max(abs(y) for _, y in vertices)
+
+
+def distance(point: Vec2, outline: Outline, pose: Pose) -> float:
+    """Distance [m] of the point from the outline at a pose; within a polygon 0, within a circle less."""
+    match outline:
+        case Circle(radius):
+            return math.dist(point, (pose.x, pose.y)) - radius
+        case Polygon(vertices):
+            c, s = math.cos(pose.theta), math.sin(pose.theta)
+            dx, dy = point[0] - pose.x, point[1] - pose.y
+            inner = c * dx + s * dy, c * dy - s * dx
+            pairs = list(zip(vertices, (*vertices[1:], vertices[0]), strict=True))
+            if all((b[0] - a[0]) * (inner[1] - a[1]) >= (b[1] - a[1]) * (inner[0] - a[0]) for a, b in pairs):
+                return 0.0
+            return min(distance_to_segment(inner, a, b) for a, b in pairs)

@@ -1,0 +1,99 @@
+"""The reader of the donor's infra-red beacon, on the head.
+
+Takes: where the head looks, where the beacon is, what stands between, the weather, chance. Gives: `IrReading`, fresh
+once a second while the head is still. Leaves alone: reflections.
+
+Signal over noise is 3.2 (25 ft / r)^2 cos^2(a) within 30 degrees of the optical axis, and the beacon is heard above
+3: so 25 ft is the edge. Noise of that ratio: sd 0.2; of the bearing: sd 0.3 degrees. With these a sweep in steps of two
+degrees that needs three readings on either side finds a beacon at 24 ft in every run and at 28 ft in none (one reading
+on the axis is heard there with a chance of 1 %); a bearing noise of 0.5 degrees would make one sweep in twenty fall
+back by a step somewhere, and so fail a reader that asks for monotone angles.
+The sun raises the noise tenfold when it stands within 25 degrees of the beacon, unless somebody stands behind the
+donor. Wind rocks the beacon: a jitter of its bearing, and gusts.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from behaviours.interface import HeadState, IrReading, Pose, Vec2, wrap
+from sim.frames import FOOT, bearing
+from sim.raycast import Scene, cast, crossings, ray
+
+SIGNAL, EDGE, HEARD = 3.2, 25 * FOOT, 3.0
+HALF_FIELD = math.radians(30)
+SUN_NOISE, SUN_NEAR = 10.0, math.radians(25)
+SHADE_WITHIN, SHADE_HEIGHT = 3.0, 1.5  # [m]: somebody this tall, this close behind the beacon, keeps the sun off
+BEAM_HEIGHT = 0.8  # [m]
+NEVER = IrReading(0.0, False, 0.0, False, math.nan, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class InfraredBuild:
+    """period [s] of fixations; sd of the signal-to-noise ratio; offset_sd [rad]."""
+
+    period: float = 1.0
+    sd: float = 0.2
+    offset_sd: float = math.radians(0.3)
+
+
+@dataclass(frozen=True, slots=True)
+class Weather:
+    """sun: its bearing [rad, world], None when it does not shine.
+
+    jitter, gust [rad]: sd of what the wind does to the beacon's bearing; gusts: chance of a gust at a fixation.
+    """
+
+    sun: float | None = None
+    jitter: float = 0.0
+    gust: float = 0.0
+    gusts: float = 0.0
+
+
+class InfraredReader:
+    """The reader. `sense` is called once a tick."""
+
+    def __init__(self, build: InfraredBuild, weather: Weather, chance: np.random.Generator) -> None:
+        self._build, self._weather, self._chance = build, weather, chance
+        self._reading, self._used = NEVER, 0.0
+
+    def sense(
+        self, stamp: float, head: HeadState, still_for: float, pose: Pose, beacon: Vec2, donor: int, scene: Scene
+    ) -> IrReading:
+        """still_for [s]: how long the head has looked there; donor: index of the thing that carries the beacon."""
+        since = min(still_for, stamp - self._used)
+        if head.settled and since >= self._build.period - 1e-6:
+            self._used = stamp
+            self._reading = self._fixation(stamp, head.pan, pose, beacon, donor, scene)
+        elif self._reading.fresh:
+            self._reading = replace(self._reading, fresh=False)
+        return self._reading
+
+    def _fixation(self, stamp: float, pan: float, pose: Pose, beacon: Vec2, donor: int, scene: Scene) -> IrReading:
+        noise, jitter, offset_noise, gust = self._chance.standard_normal(4)
+        gusty = self._chance.random() < self._weather.gusts
+        offset = wrap(bearing(pose, beacon) - pan + self._weather.jitter * jitter + self._weather.gust * gust * gusty)
+        visible = abs(offset) < HALF_FIELD and _in_sight(pose, beacon, donor, scene)
+        signal = SIGNAL * (EDGE / math.dist((pose.x, pose.y), beacon)) ** 2 * math.cos(offset) ** 2 if visible else 0.0
+        strength = max(0.0, signal / self._background(pose, beacon, donor, scene) + self._build.sd * noise)
+        detected = visible and strength > HEARD
+        measured = offset + self._build.offset_sd * offset_noise if detected else math.nan
+        return IrReading(stamp, True, pan, detected, measured, strength)
+
+    def _background(self, pose: Pose, beacon: Vec2, donor: int, scene: Scene) -> float:
+        """Noise, relative to a day without sun."""
+        sun = self._weather.sun
+        if sun is None or abs(bearing(Pose(pose.x, pose.y, sun), beacon)) > SUN_NEAR:
+            return 1.0
+        behind = crossings(ray(beacon, sun, SHADE_HEIGHT), SHADE_WITHIN, scene).thing
+        return 1.0 if (behind != donor).any() else SUN_NOISE
+
+
+def _in_sight(pose: Pose, beacon: Vec2, donor: int, scene: Scene) -> bool:
+    """Whether the donor is the first thing on the way to its beacon."""
+    angle = math.atan2(beacon[1] - pose.y, beacon[0] - pose.x)
+    _, things = cast(ray((pose.x, pose.y), angle, BEAM_HEIGHT), math.dist((pose.x, pose.y), beacon), scene)
+    return int(things[0]) in (donor, -1)

@@ -1,0 +1,77 @@
+"""Ranging by vergence: two cameras on the head turn until they see the same patch.
+
+Takes: where the head looks, the scene, chance. Gives: `StereoReading`, fresh once the head has looked in one direction
+and the base has stood still for the time of a fixation, and again after each such time.
+Leaves alone: what the patch looks like; verging fails only where there is nothing within `FARTHEST`.
+
+The ray starts above the robot's origin at camera height h with tilt t downwards. It meets the level ground at
+h / tan t, the side of a thing where it is lower than the thing is high, or the top of a thing, whichever comes first; the
+reading is the slant distance z. Noise: sd 0.003 z + 0.001 z^2, vergence being worse than proportional with range.
+A fixation takes 9 s, so that a search of 32 fixations with its head movements lasts about five minutes.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from behaviours.interface import HeadState, Pose, StereoReading
+from sim.raycast import Scene, crossings, ray
+
+FARTHEST = 30.0  # [m]
+LEVEL = 1e-6  # [rad] of tilt below which the ray never comes down
+
+
+@dataclass(frozen=True, slots=True)
+class StereoBuild:
+    """period [s] of a fixation; camera_height [m]; linear, quadratic: the sd is linear * z + quadratic * z^2."""
+
+    period: float = 9.0
+    camera_height: float = 1.2
+    linear: float = 0.003
+    quadratic: float = 0.001
+
+
+class Stereo:
+    """The verging cameras. `sense` is called once a tick."""
+
+    def __init__(self, build: StereoBuild, chance: np.random.Generator) -> None:
+        self._build, self._chance = build, chance
+        self._reading = StereoReading(0.0, False, 0.0, 0.0, math.nan, build.camera_height)
+        self._used = 0.0
+
+    def sense(self, stamp: float, head: HeadState, still_for: float, pose: Pose, scene: Scene) -> StereoReading:
+        """still_for [s]: how long head and base have not moved."""
+        since = min(still_for, stamp - self._used)
+        if head.settled and since >= self._build.period - 1e-6:
+            self._used = stamp
+            slant = self._noisy(slant_range(self._build.camera_height, head, pose, scene))
+            self._reading = replace(self._reading, stamp=stamp, fresh=True, pan=head.pan, tilt=head.tilt, range=slant)
+        elif self._reading.fresh:
+            self._reading = replace(self._reading, fresh=False)
+        return self._reading
+
+    def _noisy(self, slant: float) -> float:
+        sd = self._build.linear * slant + self._build.quadratic * slant * slant
+        return slant + sd * float(self._chance.standard_normal())
+
+
+def slant_range(camera_height: float, head: HeadState, pose: Pose, scene: Scene) -> float:
+    """True slant distance [m] from the cameras to the first thing or the ground along the gaze; NaN for neither."""
+    falls, c = math.tan(head.tilt), math.cos(head.tilt)
+    ground = camera_height / falls if head.tilt > LEVEL else math.inf
+    met = crossings(ray((pose.x, pose.y), pose.theta + head.pan), min(FARTHEST, ground), scene)
+    nearest = min([ground, *_first_touches(camera_height, falls, met.enter, met.exit, scene.height[met.thing])])
+    return nearest / c if nearest <= FARTHEST else math.nan
+
+
+def _first_touches(
+    camera_height: float, falls: float, enter: np.ndarray, leave: np.ndarray, heights: np.ndarray
+) -> list[float]:
+    """Horizontal distances [m] at which the falling ray touches things: at their side, or on their top."""
+    at_side = camera_height - falls * enter < heights
+    on_top = ~at_side & (camera_height - falls * leave < heights)
+    tops = (camera_height - heights[on_top]) / falls
+    return [*map(float, enter[at_side]), *map(float, tops)]

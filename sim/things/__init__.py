@@ -1,0 +1,1 @@
+"""Things: what else is in a world, and how it moves; one motion, one file."""

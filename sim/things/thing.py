@@ -1,0 +1,160 @@
+"""What stands, lies and moves in a world, as data, and a thing's body once it is in the world.
+
+Takes: outlines, poses and intentions. Gives: `Placed` (a thing as a scenario lays it out) and `Thing` (the same thing
+with its pymunk body). Leaves alone: stepping, and when an intention is acted upon (the files of this folder that are
+named after a motion do that).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import pymunk
+
+from behaviours.interface import Pose, Vec2, wrap
+from sim.raycast import Circle, Outline, Polygon, reach
+
+ROBOT, OTHER = 1, 2  # collision types
+FRICTION = 0.2  # between hulls; nothing climbs or sticks in the plane
+AWAY = 1000.0  # [m] where things wait that are not in the world
+
+
+@dataclass(frozen=True, slots=True)
+class At:
+    """From a moment [s] on; where `every` [s] is given, again and again."""
+
+    time: float
+    every: float = math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class RobotWithin:
+    """When the robot comes within this distance [m] of the thing for the first time, hull to hull."""
+
+    distance: float
+
+
+@dataclass(frozen=True, slots=True)
+class RobotLeft:
+    """When the robot is this far [m] from where it started for the first time."""
+
+    distance: float
+
+
+Trigger = At | RobotWithin | RobotLeft
+
+
+@dataclass(frozen=True, slots=True)
+class Waypoint:
+    """A corner of a track [m] and how long [s] to wait there."""
+
+    x: float
+    y: float
+    wait: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Travel:
+    """Along a track at a speed [m/s], from its first waypoint on.
+
+    then: "vanish" (in the world only while it travels), "stay" at the end, or "loop" (back to the first waypoint).
+    look_ahead [m]: it brakes for what stands in its lane so near; heeds_all: for whatever it is, otherwise for
+    the robot alone.
+    """
+
+    track: tuple[Waypoint, ...]
+    speed: float
+    start: Trigger = At(0.0)
+    then: str = "loop"
+    look_ahead: float = 0.6
+    heeds_all: bool = False
+    acceleration: float = 2.0
+    turn_rate: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Roll:
+    """Once, towards the robot at a speed [m/s], until the gap [m] between the hulls is `gap`."""
+
+    start: Trigger
+    speed: float = 1.0
+    gap: float = 0.1
+
+
+@dataclass(frozen=True, slots=True)
+class Shift:
+    """Once, by a way [m, world] at a speed [m/s]."""
+
+    start: Trigger
+    by: Vec2
+    speed: float = 0.3
+
+
+Motion = Travel | Roll | Shift
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """A thing where a scenario puts it. mass [kg]: 0 for what cannot be pushed; height [m] above the ground."""
+
+    id: str
+    kind: str
+    outline: Outline
+    pose: Pose
+    height: float
+    mass: float = 0.0
+    motion: Motion | None = None
+
+    @property
+    def moves(self) -> bool:
+        """Whether it can ever be elsewhere."""
+        return self.mass > 0 or self.motion is not None
+
+
+class Thing:
+    """A thing in the world: `placed` and the body that carries its shape."""
+
+    def __init__(self, index: int, placed: Placed, space: pymunk.Space) -> None:
+        self.index, self.placed, self.reach = index, placed, reach(placed.outline)
+        self.body, self._space = _body(placed), space
+        self.body.position, self.body.angle = (placed.pose.x, placed.pose.y), placed.pose.theta
+        self.shape = _shape(placed.outline, self.body)
+        self.shape.friction, self.shape.collision_type = FRICTION, OTHER
+        space.add(self.body, self.shape)
+        self.present = True
+
+    @property
+    def pose(self) -> Pose:
+        """Where it is now; meaningless while it is not present."""
+        x, y = self.body.position
+        return Pose(x, y, wrap(self.body.angle))
+
+    def put(self, x: float, y: float, theta: float) -> None:
+        """Into the world at a place, at rest."""
+        self._set(x, y, theta, True)
+
+    def remove(self) -> None:
+        """Out of the world, to where nothing meets it."""
+        self._set(AWAY * (1 + self.index), AWAY, 0.0, False)
+
+    def _set(self, x: float, y: float, theta: float, present: bool) -> None:
+        self.body.position, self.body.angle = (x, y), theta
+        self.body.velocity, self.body.angular_velocity = (0.0, 0.0), 0.0
+        self._space.reindex_shapes_for_body(self.body)
+        self.present = present
+
+
+def _body(placed: Placed) -> pymunk.Body:
+    if placed.mass > 0:
+        return pymunk.Body(placed.mass, pymunk.moment_for_circle(placed.mass, 0.0, reach(placed.outline)))
+    kinematic = placed.motion is not None
+    return pymunk.Body(body_type=pymunk.Body.KINEMATIC if kinematic else pymunk.Body.STATIC)
+
+
+def _shape(outline: Outline, body: pymunk.Body) -> pymunk.Shape:
+    match outline:
+        case Circle(radius):
+            return pymunk.Circle(body, radius)
+        case Polygon(vertices):
+            return pymunk.Poly(body, vertices)
