@@ -144,7 +144,8 @@ def pack(recording: Recording, verdict: str = "") -> Json:
         t = tick.get("t")
         milliseconds.append(round(t * 1000) if isinstance(t, int | float) else index * 100)
         packing.world(index, _part(tick, "world"))
-        packing.plan(index, _part(tick, "plan"))
+        if isinstance(tick.get("plan"), Mapping):
+            packing.plan(index, _part(tick, "plan"))
     return {
         "header": recording.header,
         "verdict": verdict,
@@ -157,8 +158,12 @@ def pack(recording: Recording, verdict: str = "") -> Json:
 
 
 def _title(header: Json) -> str:
-    names = [str(_part(header, part).get("name") or "") for part in ("plan", "scenario")]
-    return " · ".join([name for name in names if name] or ["a run"])
+    scenario = header.get("scenario")
+    names = [
+        _part(header, "plan").get("name"),
+        scenario if isinstance(scenario, str) else _part(header, "scenario").get("name"),
+    ]
+    return " · ".join([str(name) for name in names if name] or ["a run"])
 
 
 def write_replay(recording: Recording, path: Path | str, verdict: str = "") -> None:

@@ -195,8 +195,15 @@ def test_a_hand_written_brain_and_a_bare_header_are_shown_too(tmp_path: Path) ->
         recorder.tick(0.1, {}, "null")
     packed = embedded(page_of(read(tmp_path / "run.mcap"), tmp_path))
     assert track(packed, "robot") == ([0], [[0.0, 0.0, 0.0]])
-    assert run_of(packed, "way") == [None, None]
+    assert "way" not in packed["runs"]
     assert "<title>a run</title>" in (tmp_path / "run.html").read_text(encoding="utf-8")
+
+
+def test_what_a_plan_said_last_stands_when_it_says_nothing(run: Recording) -> None:
+    after = Recording(HEADER, [*run.ticks, {"t": 10.0, "world": {}, "plan": None}])
+    packed: Any = pack(after)
+    assert packed["ticks"] == 101
+    assert run_of(packed, "outputs")[-2:] == [{"action": "(go)", "goal": None}] * 2
 
 
 def test_twelve_minutes_of_noise_stay_small(tmp_path: Path) -> None:
