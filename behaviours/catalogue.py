@@ -155,6 +155,8 @@ _CIRCLES = _parameters(
     ("far", "m", "Echoes beyond are not aggregated (chosen here)."),
     ("max_radius", "m", "No reading is added that makes a circle larger (chosen here)."),
     ("pad", "m", "Added to the radius of every circle (chosen here)."),
+    ("half_cone", "rad", "Half the cone of a sonar; 0 puts every echo on the axis (chosen here)."),
+    ("neighbours_near", "m", "Echoes of neighbours that differ by less are of one thing (chosen here)."),
 )
 _NAT = _parameters(
     NatSettings(),

@@ -17,13 +17,15 @@ from behaviours.interface import Vec2
 
 @dataclass(frozen=True, slots=True)
 class CircleSettings:
-    """obstacles, readings: counts; far, max_radius, pad: lengths [m]."""
+    """obstacles, readings: counts; half_cone [rad]; the others lengths [m]."""
 
     obstacles: int = 10
     readings: int = 5
     far: float = 3.0
     max_radius: float = 0.5
-    pad: float = 0.1
+    pad: float = 0.05
+    half_cone: float = math.radians(9.0)
+    neighbours_near: float = 0.5
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,10 +10,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from behaviours.cores.circles import Circles, CircleSettings, perceive
-from behaviours.cores.geometry import distance, echo
+from behaviours.cores.cone import echoes_of
+from behaviours.cores.geometry import distance
 from behaviours.cores.nat import Memory, NatPlan, NatSettings, contradicted, make_plan, opposite
 from behaviours.estimators.navigation import as_goal
-from behaviours.interface import Channels, Pose, Ranges, Reading, Report
+from behaviours.interface import Channels, Pose, Ranges, Reading, Report, Vec2
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,13 +44,17 @@ class Obstacles:
         sonar = reading.sonar
         fresh = sonar is not None and sonar.fresh
         if sonar is not None and fresh:
-            self.memory = perceive(self.memory, echoes_of(sonar, pose), self.settings[0])
+            self.memory = perceive(self.memory, self._echoes(sonar, pose), self.settings[0])
         goal = as_goal(channels)
         if goal is None:
             self._forget_plan()
         elif fresh or self.plan is None or self.plan.goal != goal:
             self._replan(pose, goal, reading.stamp)
         self._mind_progress(reading, self._driver in reports and goal is not None)
+
+    def _echoes(self, ring: Ranges, pose: Pose) -> list[tuple[float, Vec2]]:
+        settings = self.settings[0]
+        return echoes_of(ring, pose, settings.half_cone, settings.neighbours_near)
 
     def plan_to(self, pose: Pose, goal: Pose, now: float) -> NatPlan:
         """The plan from the robot to the goal at stamp now [s]: the latest one if that is its goal."""
@@ -88,11 +93,3 @@ class Obstacles:
             self._spins = {**self._spins, **dict.fromkeys(group.idents, locked)}
             self._replan(reading.odometry.pose, self.plan.goal, reading.stamp)
 
-
-def echoes_of(ring: Ranges, pose: Pose) -> list[tuple[float, tuple[float, float]]]:
-    """(range [m], point in the frame of the pose) of every transducer that heard something."""
-    return [
-        (r, echo(pose, b, ring.mount_radius + r))
-        for r, b in zip(ring.ranges.tolist(), ring.bearings.tolist(), strict=True)
-        if r < ring.max_range
-    ]
