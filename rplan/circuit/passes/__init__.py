@@ -1,0 +1,29 @@
+"""Passes over circuits, one file each; every pass gives a circuit that computes the same outputs.
+
+Takes: a circuit. Gives: `PIPELINE` in order, `run`. Leaves alone: meaning.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from rplan.circuit.check import check
+from rplan.circuit.circuit import Circuit
+from rplan.circuit.passes.share import share
+from rplan.circuit.passes.sweep import sweep
+
+Pass = Callable[[Circuit], Circuit]
+
+PIPELINE: tuple[Pass, ...] = (
+    share,  # equal gates become one, constants disappear: leaves nets that nobody reads
+    sweep,  # last: takes away what nobody reads
+)
+
+
+def run(circuit: Circuit) -> Circuit:
+    """The circuit after all passes, checked after each."""
+    check(circuit)
+    for one in PIPELINE:
+        circuit = one(circuit)
+        check(circuit)
+    return circuit

@@ -1,0 +1,228 @@
+"""Conditions, values, outputs and settings with their names looked up and their types checked (L5-L8, L21).
+
+Takes: syntax of rplan/lang/plan.py and a `Scope`. Gives: the resolved forms of condition.py and goal.py; what is wrong
+goes to the scope's findings and a harmless stand-in comes back, so that one run finds every error. Leaves alone: goals.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from rplan.goals import condition as c
+from rplan.goals import goal as g
+from rplan.goals.scope import Scope
+from rplan.goals.signature import BOOL, COMPETENCE_FAILED, ParameterSignature
+from rplan.lang import plan as p
+from rplan.lang.diagnostic import Related
+from rplan.lang.plan import Type
+from rplan.lang.source import Span
+from rplan.lang.suggest import close
+
+NUMBER = Type("number")
+
+
+def resolve_condition(condition: p.Condition, scope: Scope, inside: tuple[str, ...] = ()) -> c.Condition:
+    """A condition with named conditions put in place; inside: the names on the way here, for circles (L10)."""
+    match condition:
+        case p.Truth(value):
+            return c.Constant(value)
+        case p.Not(inner):
+            return c.Not(resolve_condition(inner, scope, inside))
+        case p.AllOf(parts):
+            return c.AllOf(tuple(resolve_condition(part, scope, inside) for part in parts))
+        case p.AnyOf(parts):
+            return c.AnyOf(tuple(resolve_condition(part, scope, inside) for part in parts))
+        case p.Compare():
+            return _comparison(condition, scope)
+        case p.Call(name, arguments, span) if name in scope.conditions:
+            return _named(name, arguments, span, scope, inside)
+        case p.Call():
+            term = _call(condition, scope, BOOL, "condition")
+            return c.Percept(term.text, term)
+
+
+def _named(
+    name: str, arguments: tuple[p.Expression, ...], span: Span, scope: Scope, inside: tuple[str, ...]
+) -> c.Condition:
+    scope.used[("condition", name)] = None
+    definition = scope.conditions[name]
+    if arguments:
+        scope.findings.add(
+            "error", "wrong-arity", f"the condition `{name}` takes no arguments", span,
+            related=[Related("defined here", definition.span)],
+        )  # fmt: skip
+    if name in inside:
+        path = " → ".join((*inside[inside.index(name) :], name))
+        scope.findings.add("error", "condition-circle", f"`{name}` depends on itself within one tick: {path}", span)
+        return c.Constant(False)
+    return resolve_condition(definition.condition, scope, (*inside, name))
+
+
+def _comparison(compare: p.Compare, scope: Scope) -> c.Comparison:
+    left = _number(compare.left, scope)
+    right = _number(compare.right, scope)
+    left, right = _same_unit(left, right, compare.span, scope)
+    return c.Comparison(f"({compare.operator} {left.text} {right.text})", compare.operator, left, right)
+
+
+def _number(expression: p.Number | p.Call, scope: Scope) -> c.Term:
+    if isinstance(expression, p.Number):
+        return _literal(expression)
+    term = _call(expression, scope, None, "number")
+    if term.type is not None and term.type.name != "number":
+        scope.findings.add(
+            "error", "type-mismatch", f"`{term.text}` is of type {term.type}; a number is compared", expression.span
+        )
+    return term
+
+
+def _same_unit(left: c.Term, right: c.Term, span: Span, scope: Scope) -> tuple[c.Term, c.Term]:
+    units = [term.type.unit if term.type is not None and term.type.name == "number" else None for term in (left, right)]
+    if None in units or units[0] == units[1]:
+        return left, right
+    if "" not in units:
+        scope.findings.add(
+            "error", "unit-mismatch", f"`{left.text}` [{units[0]}] and `{right.text}` [{units[1]}] cannot be compared",
+            span,
+        )  # fmt: skip
+        return left, right
+    unit = units[0] or units[1] or ""
+    bare = left if units[0] == "" else right
+    scope.findings.add("warning", "bare-number", f"`{bare.text}` has no unit; it is read in [{unit}]", bare.span)
+    if bare.kind != "number":
+        return left, right
+    dressed = replace(bare, type=Type("number", unit))
+    return (dressed, right) if bare is left else (left, dressed)
+
+
+def _literal(number: p.Number) -> c.Term:
+    return c.Term("number", "", (), number.value, Type("number", number.unit), number.span)
+
+
+def resolve_value(value: p.Expression, wanted: Type | None, scope: Scope) -> c.Term:
+    """A value that has to be of type `wanted` (None: nothing tells it)."""
+    match value:
+        case p.Number():
+            term = _literal(value)
+        case p.Truth(truth, span):
+            term = c.Term("truth", "", (), truth, BOOL, span)
+        case p.Call(name, (), span) if wanted is not None and wanted.name == "symbol":
+            return c.Term("symbol", name, (), None, wanted, span)
+        case p.Call():
+            term = _call(value, scope, wanted, "value")
+    return _fitting(term, wanted, scope)
+
+
+def _fitting(term: c.Term, wanted: Type | None, scope: Scope) -> c.Term:
+    if wanted is None or term.type is None or term.type == wanted:
+        return term
+    if term.type.name == wanted.name == "number":
+        if "" not in (term.type.unit, wanted.unit):
+            scope.findings.add(
+                "error",
+                "unit-mismatch",
+                f"`{term.text}` is in [{term.type.unit}]; wanted is [{wanted.unit}]",
+                term.span,
+            )
+            return term
+        if term.type.unit == "" and term.kind == "number":
+            scope.findings.add(
+                "warning", "bare-number", f"`{term.text}` has no unit; it is read in [{wanted.unit}]", term.span
+            )
+            return replace(term, type=wanted)
+        return term
+    scope.findings.add("error", "type-mismatch", f"`{term.text}` is of type {term.type}; wanted is {wanted}", term.span)
+    return term
+
+
+def _call(call: p.Call, scope: Scope, wanted: Type | None, what: str) -> c.Term:
+    function = scope.function(call.name, call.span, what)
+    parameters: tuple[Type | None, ...] = (None,) * len(call.arguments)
+    kind = wanted
+    if function is not None:
+        kind = function.type
+        if len(function.parameters) != len(call.arguments):
+            scope.findings.add(
+                "error", "wrong-arity",
+                f"`{call.name}` takes {_count(len(function.parameters))}, here are {len(call.arguments)}", call.span,
+            )  # fmt: skip
+        else:
+            parameters = function.parameters
+        if what == "condition" and kind is not None and kind != BOOL:
+            scope.findings.add(
+                "error", "type-mismatch", f"`{call.name}` is of type {kind}; a condition is a bool", call.span
+            )
+    arguments = tuple(
+        resolve_value(argument, parameter, scope)
+        for argument, parameter in zip(call.arguments, parameters, strict=True)
+    )
+    if call.name == COMPETENCE_FAILED.name and len(arguments) == 1:
+        _known_competence(arguments[0], scope)
+    return c.Term("call", call.name, arguments, None, kind, call.span)
+
+
+def _count(number: int) -> str:
+    return "no arguments" if number == 0 else "1 argument" if number == 1 else f"{number} arguments"
+
+
+def _known_competence(argument: c.Term, scope: Scope) -> None:
+    commands = [f.name for f in scope.functions.values() if f.type is not None and f.type.name == "command"]
+    if argument.name not in commands and commands:
+        meant = close(argument.name, commands)
+        scope.findings.add(
+            "error" if meant else "note", "misspelt" if meant else "undeclared",
+            f"no competence is called `{argument.name}`", argument.span,
+            hint=f"did you mean `{meant}`?" if meant else "",
+        )  # fmt: skip
+
+
+def resolve_outputs(plan: p.Plan, scope: Scope, top: g.Goal | None) -> tuple[g.Output, ...]:
+    """The channels in the order in which they are filled: declared ones first, others as they appear (L25)."""
+    outputs = {
+        d.name: g.Output(
+            d.name, d.type,
+            None if d.idle is None else resolve_value(d.idle, d.type, scope), d.hold,
+            None if d.initial is None else resolve_value(d.initial, d.type, scope), d.span,
+        )
+        for d in plan.outputs
+    }  # fmt: skip
+    for node in () if top is None else g.walk(top):
+        if isinstance(node, g.Do) and node.output not in outputs:
+            outputs[node.output] = g.Output(node.output, node.value.type, None, False, None, node.span)
+    return tuple(outputs.values())
+
+
+def resolve_settings(plan: p.Plan, scope: Scope) -> tuple[g.BoundLibrary, ...]:
+    """Every library in use with the values of its parameters, defaults where the plan is silent."""
+    bound = []
+    for use in plan.uses:
+        if use.library not in scope.libraries:
+            continue
+        known = {parameter.name: parameter for parameter in scope.libraries[use.library].parameters}
+        values: dict[str, float | bool | str] = {name: parameter.default for name, parameter in known.items()}
+        for setting in use.settings:
+            if setting.name not in known:
+                meant = close(setting.name, list(known))
+                hint = f"did you mean `:{meant}`?" if meant else f"it has: {', '.join(known) or 'none'}"
+                scope.findings.add(
+                    "error", "unknown-parameter", f"`{use.library}` has no parameter `:{setting.name}`", setting.span,
+                    hint=hint,
+                )  # fmt: skip
+                continue
+            value = _setting(setting, known[setting.name], scope)
+            if value is not None:
+                values[setting.name] = value
+        bound.append(g.BoundLibrary(use.library, values, use.span))
+    return tuple(bound)
+
+
+def _setting(setting: p.Setting, parameter: ParameterSignature, scope: Scope) -> float | bool | str | None:
+    match setting.value:
+        case p.Number() | p.Truth():
+            term = _fitting(resolve_value(setting.value, None, scope), parameter.type, scope)
+            return term.value
+        case p.Call(name, ()) if parameter.type.name == "symbol":
+            return name
+        case p.Call(span=span):
+            scope.findings.add("error", "type-mismatch", f"`:{setting.name}` wants {parameter.type}", span)
+            return None

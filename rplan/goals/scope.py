@@ -1,0 +1,148 @@
+"""Which name means what, and which name was meant.
+
+Takes: a `Plan` and the signatures of the libraries that there are. Gives: `Scope` (tables of names) and look-ups that
+note, warn or refuse with "did you mean" (L6). Leaves alone: goals; see expand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from rplan.goals.signature import COMPETENCE_FAILED, FunctionSignature, Libraries, LibrarySignature
+from rplan.lang.diagnostic import Diagnostic, Related, Severity
+from rplan.lang.plan import NamedCondition, OutputDeclaration, Plan, Rule
+from rplan.lang.source import Span
+from rplan.lang.suggest import close
+
+
+@dataclass(slots=True)
+class Findings:
+    """Diagnostics as they are found."""
+
+    list: list[Diagnostic] = field(default_factory=list)
+
+    def add(
+        self,
+        severity: Severity,
+        code: str,
+        message: str,
+        span: Span,
+        *,
+        related: Iterable[Related] = (),
+        hint: str = "",
+    ) -> None:
+        """Take down one finding; the same one twice counts once."""
+        found = Diagnostic(code, severity, message, span, tuple(related), hint)
+        if found not in self.list:
+            self.list.append(found)
+
+    def failed(self) -> bool:
+        return any(d.severity == "error" for d in self.list)
+
+
+@dataclass(slots=True)
+class Scope:
+    """The tables of names of one plan, one a name space, and which of them have been used."""
+
+    functions: dict[str, FunctionSignature]
+    outputs: dict[str, OutputDeclaration]
+    conditions: dict[str, NamedCondition]
+    rules: dict[tuple[str, str], list[Rule]]
+    libraries: dict[str, LibrarySignature]
+    findings: Findings
+    strict: bool
+    used: dict[tuple[str, str], None] = field(default_factory=dict)
+    unknown: dict[tuple[str, str], None] = field(default_factory=dict)
+
+    def function(self, name: str, span: Span, what: str) -> FunctionSignature | None:
+        """The function of this name; an unknown one is noted once, a close one is an error."""
+        self.used[("function", name)] = None
+        if name in self.functions:
+            return self.functions[name]
+        names = [*self.functions, *(self.conditions if what == "condition" else ())]
+        self.stranger("function", name, names, span, f"`{name}` is declared nowhere: it is taken for a {what}")
+        return None
+
+    def output(self, name: str, span: Span) -> OutputDeclaration | None:
+        """The declaration of an output, if there is one."""
+        self.used[("output", name)] = None
+        if name in self.outputs:
+            return self.outputs[name]
+        self.stranger(
+            "output", name, list(self.outputs), span, f"`{name}` is declared nowhere: it is taken for an output"
+        )
+        return None
+
+    def stranger(self, space: str, name: str, known: list[str], span: Span, note: str) -> None:
+        """A name that nothing declares: an error where it is close to one that is known, else a note (L6)."""
+        meant = close(name, known)
+        if meant is not None:
+            self.findings.add(
+                "error", "misspelt", f"no {space} is called `{name}`", span, hint=f"did you mean `{meant}`?"
+            )
+        elif (space, name) not in self.unknown:
+            self.unknown[(space, name)] = None
+            self.findings.add("error" if self.strict else "note", "undeclared", note, span)
+
+
+def scope_of(plan: Plan, libraries: Libraries, strict: bool, findings: Findings) -> Scope:
+    """The tables of a plan; unknown libraries, and names that two of them offer, are reported."""
+    scope = Scope({COMPETENCE_FAILED.name: COMPETENCE_FAILED}, {}, {}, {}, {}, findings, strict)
+    for use in plan.uses:
+        if use.library not in libraries:
+            meant = close(use.library, list(libraries))
+            hint = f"did you mean `{meant}`?" if meant else f"there are: {', '.join(libraries) or 'none'}"
+            findings.add("error", "unknown-library", f"no library is called `{use.library}`", use.span, hint=hint)
+            continue
+        scope.libraries[use.library] = libraries[use.library]
+        for function in libraries[use.library].functions:
+            _offer(scope, function, use.span)
+    for declaration in plan.declarations:
+        parameters = tuple(kind for _, kind in declaration.parameters)
+        _offer(
+            scope, FunctionSignature(declaration.name, parameters, declaration.type, declaration.doc), declaration.span
+        )
+    scope.outputs = {output.name: output for output in plan.outputs}
+    for condition in plan.conditions:
+        if condition.name in scope.functions:
+            findings.add(
+                "error", "duplicate", f"`{condition.name}` is a function already and cannot be a condition too",
+                condition.span,
+            )  # fmt: skip
+        scope.conditions[condition.name] = condition
+    for rule in plan.rules:
+        scope.rules.setdefault((rule.kind, rule.name), []).append(rule)
+    return scope
+
+
+def _offer(scope: Scope, function: FunctionSignature, span: Span) -> None:
+    before = scope.functions.get(function.name)
+    if before is not None:
+        scope.findings.add(
+            "error", "duplicate", f"`{function.name}` comes from {function.origin} and from {before.origin}", span
+        )
+    scope.functions[function.name] = function
+
+
+def report_unused(plan: Plan, scope: Scope) -> None:
+    """Warn of what is declared and not used (L6)."""
+    used = scope.used
+    for declaration in plan.declarations:
+        if ("function", declaration.name) not in used:
+            scope.findings.add("warning", "unused", f"`{declaration.name}` is declared and not used", declaration.span)
+    for output in plan.outputs:
+        if ("output", output.name) not in used:
+            scope.findings.add("warning", "unused", f"the output `{output.name}` is never set", output.span)
+    for condition in plan.conditions:
+        if ("condition", condition.name) not in used:
+            scope.findings.add("warning", "unused", f"the condition `{condition.name}` is not used", condition.span)
+    for rule in plan.rules:
+        if plan.top is not None and ("rule", f"({rule.kind} {rule.name})") not in used:
+            scope.findings.add(
+                "warning", "unused", f"no goal that is reached asks for `({rule.kind} {rule.name})`", rule.head_span
+            )
+    for use in plan.uses:
+        library = scope.libraries.get(use.library)
+        if library is not None and not any(("function", f.name) in used for f in library.functions):
+            scope.findings.add("warning", "unused", f"nothing of the library `{use.library}` is used", use.span)

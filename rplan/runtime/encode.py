@@ -1,0 +1,65 @@
+"""Percepts → bits.
+
+Takes: percept values by canonical text. Gives: the inputs of the circuit; `PerceptError` for a value that is missing,
+of the wrong type or not finite. Leaves alone: where values come from.
+
+The encoder is generated Python, one line a percept and one an atom, since it runs in every tick.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import cast
+
+from rplan.goals.condition import Atom, Comparison, Percept, Term, percept_terms
+from rplan.goals.goal import Goals
+
+PerceptValue = bool | float
+Encode = Callable[[Mapping[str, PerceptValue]], tuple[bool, ...]]
+
+
+class PerceptError(ValueError):
+    """A percept has no value that a circuit can take; key is its canonical text."""
+
+    def __init__(self, key: str, message: str) -> None:
+        self.key = key
+        super().__init__(f"{key}: {message}")
+
+
+def encoder(goals: Goals, atoms: Sequence[Atom]) -> Encode:
+    """The function from percept values to the inputs of the circuit, in the order of `atoms`."""
+    percepts = goals.percepts()
+    names = {term.text: f"p{n}" for n, term in enumerate(percepts)}
+    numeric = {term.text for atom in atoms if isinstance(atom, Comparison) for term in percept_terms(atom)}
+    lines = ["def encode(values):", "    try:"]
+    lines += [f"        {names[term.text]} = values[{term.text!r}]" for term in percepts] or ["        pass"]
+    lines += ["    except KeyError as error:", "        raise missing(error.args[0]) from None"]
+    for term in percepts:
+        wrong = "wrong_number" if term.text in numeric else "wrong_bool"
+        test = f"{wrong}({names[term.text]})" if term.text in numeric else f"{names[term.text]}.__class__ is not bool"
+        lines += [f"    if {test}:", f"        raise {wrong}_error({term.text!r}, {names[term.text]})"]
+    lines.append(f"    return ({''.join(f'{_expression(atom, names)}, ' for atom in atoms)})")
+    scope: dict[str, object] = {
+        "missing": lambda key: PerceptError(key, "the plan reads it, and there is no value"),
+        "wrong_number": _wrong_number,
+        "wrong_number_error": lambda key, value: PerceptError(key, f"a finite number is wanted, not {value!r}"),
+        "wrong_bool_error": lambda key, value: PerceptError(key, f"true or false is wanted, not {value!r}"),
+    }
+    exec(compile("\n".join(lines), "<encoder>", "exec"), scope)
+    return cast(Encode, scope["encode"])
+
+
+def _wrong_number(value: object) -> bool:
+    return isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value)
+
+
+def _expression(atom: Atom, names: Mapping[str, str]) -> str:
+    if isinstance(atom, Percept):
+        return names[atom.text]
+    operator = {"=": "==", "/=": "!="}.get(atom.operator, atom.operator)
+    return f"{_side(atom.left, names)} {operator} {_side(atom.right, names)}"
+
+
+def _side(term: Term, names: Mapping[str, str]) -> str:
+    return names[term.text] if term.kind == "call" else repr(term.value)

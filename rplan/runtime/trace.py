@@ -1,0 +1,108 @@
+"""A tick as JSON, for recordings and for `rplan tick`.
+
+Takes: decisions and ticks of a compiled plan. Gives: JSON text in the form of L22 (`way` names rules, branches and
+members given up). Leaves alone: where it is written.
+
+A way depends on inputs and registers alone, so it is put into words once for each pair of them.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import asdict
+from typing import Any
+
+from rplan.circuit.evaluate import Bits
+from rplan.goals.condition import Term
+from rplan.runtime.controller import Tick
+from rplan.runtime.tick import Decision, Setting
+from rplan.ways.reduce import Ways
+from rplan.ways.way import TakenWay, taken_way
+
+Show = Callable[[object], object]
+"""A value of the run-time world -> plain JSON value."""
+
+
+class Trace:
+    """Puts ticks of one plan into words."""
+
+    def __init__(self, ways: Ways, show: Show = str) -> None:
+        self._ways = ways
+        self._show = show
+        self._known: dict[tuple[Bits, Bits], tuple[TakenWay, str]] = {}
+
+    def way(self, decision: Decision) -> TakenWay:
+        """The way that was taken."""
+        return self._way(decision)[0]
+
+    def _way(self, decision: Decision) -> tuple[TakenWay, str]:
+        key = (decision.inputs, decision.registers)
+        if key not in self._known:
+            way = taken_way(self._ways, decision.inputs)
+            self._known[key] = way, _compact(way_json(way))
+        return self._known[key]
+
+    def line(self, number: int, decision: Decision) -> str:
+        """One line of `rplan tick` (L22)."""
+        return _compact(
+            {
+                "tick": number,
+                "hole": decision.hole,
+                "outputs": texts(decision.outputs),
+                "sent": texts(decision.sent),
+                "way": way_json(self.way(decision)),
+            }
+        )
+
+    def _sent(self, term: Term | None, value: object) -> object:
+        """What a channel holds: the text of a competence or literal, a value of the run-time world as it came out."""
+        if term is None or (term.kind == "call" and value is None):
+            return None
+        is_value = term.kind == "call" and (term.type is None or term.type.name != "command")
+        return self._show(value) if is_value else term.text
+
+    def note(self, tick: Tick[Any]) -> str:
+        """The plan's part of a recorded tick."""
+        decision = tick.decision
+        sent = {name: self._sent(term, tick.values[name]) for name, term in decision.sent.items()}
+        rest = {
+            "inputs": _bits(decision.inputs),
+            "registers": _bits(decision.registers),
+            "hole": decision.hole,
+            "outputs": texts(decision.outputs),
+            "sent": sent,
+            "started": list(tick.started),
+            "stopped": list(tick.stopped),
+            "faults": [asdict(fault) for fault in tick.faults],
+            "reports": {
+                f"({name})": {"status": report.status, "details": report.details}
+                for name, report in tick.reports.items()
+            },
+        }
+        return f'{_compact(rest)[:-1]},"way":{self._way(decision)[1]}}}'
+
+
+def texts(setting: Setting) -> dict[str, str | None]:
+    """Output -> canonical text."""
+    return {output: None if term is None else term.text for output, term in setting.items()}
+
+
+def way_json(way: TakenWay) -> Mapping[str, object]:
+    """A way as plain JSON values, with lines of the plan's text."""
+    return {
+        "rules": list(way.rules),
+        "branches": [
+            {"condition": b.condition, "value": b.value, "rule": b.rule, "line": b.span.line} for b in way.branches
+        ],
+        "acts": [{"output": a.output, "value": a.value, "rule": a.rule, "line": a.span.line} for a in way.acts],
+        "given_up": [{"member": g.member, "because": g.because, "line": g.span.line} for g in way.given_up],
+    }
+
+
+def _bits(bits: Bits) -> str:
+    return "".join("1" if bit else "0" for bit in bits)
+
+
+def _compact(value: object) -> str:
+    return json.dumps(value, separators=(",", ":"), ensure_ascii=False)

@@ -1,0 +1,100 @@
+"""Hypothesis strategies: resolved goals, circuits and traces.
+
+Takes: nothing. Gives: strategies that the property tests share. Leaves alone: texts; see strategies_lang.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from hypothesis import strategies as st
+
+from rplan.circuit.cell import Cell, Op
+from rplan.circuit.circuit import Circuit, Port, Register
+from rplan.goals.condition import AllOf, AnyOf, Condition, Constant, Not, Percept, Term
+from rplan.goals.goal import And, Anything, Do, Goal, Goals, If, Or, Output, PrioAnd, walk
+from rplan.goals.signature import BOOL
+from rplan.lang.source import NOWHERE
+
+ATOMS = ("(a)", "(b)", "(c)", "(d)")
+OUTPUTS = ("x", "y", "z")
+VALUES = ("(p)", "(q)")
+
+
+def percept(text: str) -> Percept:
+    return Percept(text, Term("call", text[1:-1], (), None, BOOL, NOWHERE))
+
+
+def do(output: str, value: str) -> Do:
+    return Do(output, Term("call", value[1:-1], (), None, None, NOWHERE), "(goalem)", NOWHERE)
+
+
+def conditions() -> st.SearchStrategy[Condition]:
+    leaves = st.sampled_from(ATOMS).map(percept) | st.booleans().map(Constant)
+    return st.recursive(
+        leaves,
+        lambda inner: st.one_of(
+            inner.map(Not),
+            st.lists(inner, min_size=1, max_size=3).map(lambda parts: AllOf(tuple(parts))),
+            st.lists(inner, min_size=1, max_size=3).map(lambda parts: AnyOf(tuple(parts))),
+        ),
+        max_leaves=4,
+    )
+
+
+def goals(*, alternatives: bool = True, max_leaves: int = 12) -> st.SearchStrategy[Goal]:
+    leaves = st.one_of(
+        st.builds(do, st.sampled_from(OUTPUTS), st.sampled_from(VALUES)),
+        st.builds(do, st.sampled_from(OUTPUTS), st.sampled_from(VALUES)),
+        st.just(Anything("(goalem)", NOWHERE)),
+    )
+
+    def extend(inner: st.SearchStrategy[Goal]) -> st.SearchStrategy[Goal]:
+        several = st.lists(inner, min_size=1, max_size=4).map(tuple)
+        nodes: list[st.SearchStrategy[Goal]] = [
+            st.builds(lambda c, a, b: If(c, a, b, "(goalem)", NOWHERE), conditions(), inner, inner),
+            several.map(lambda parts: And(parts, NOWHERE)),
+            several.map(lambda parts: PrioAnd(parts, NOWHERE)),
+            several.map(lambda parts: PrioAnd(parts, NOWHERE)),
+        ]
+        if alternatives:
+            nodes.append(several.map(lambda parts: Or(parts, NOWHERE)))
+        return st.one_of(nodes)
+
+    return st.recursive(leaves, extend, max_leaves=max_leaves)
+
+
+def whole(top: Goal) -> Goals:
+    """A plan around a goal."""
+    outputs = dict.fromkeys(node.output for node in walk(top) if isinstance(node, Do))
+    return Goals(
+        "random", "", 0.1, top,
+        tuple(Output(name, None, None, False, None, NOWHERE) for name in outputs), (), (), {}, NOWHERE,
+    )  # fmt: skip
+
+
+@st.composite
+def circuits(draw: st.DrawFn) -> Circuit:
+    """Random well-formed circuits with registers."""
+    inputs = draw(st.integers(0, 4))
+    registers = draw(st.integers(0, 3))
+    cells = [Cell(Op.INPUT, (), n) for n in range(inputs)] + [Cell(Op.REGISTER, (), n) for n in range(registers)]
+    cells += [Cell(Op.CONSTANT, (), draw(st.integers(0, 1)))]
+    for _ in range(draw(st.integers(0, 25))):
+        op = draw(st.sampled_from((Op.NOT, Op.AND, Op.OR)))
+        cells.append(Cell(op, tuple(draw(st.integers(0, len(cells) - 1)) for _ in range(op.arity))))
+    nets = st.integers(0, len(cells) - 1)
+    return Circuit(
+        "random",
+        tuple(Port(f"i{n}") for n in range(inputs)),
+        tuple(Register(f"r{n}", draw(st.booleans()), draw(nets)) for n in range(registers)),
+        tuple(cells),
+        tuple((Port(f"o{n}"), draw(nets)) for n in range(draw(st.integers(1, 4)))),
+    )
+
+
+@st.composite
+def circuits_with_traces(draw: st.DrawFn) -> tuple[Circuit, list[Sequence[bool]]]:
+    circuit = draw(circuits())
+    tick = st.lists(st.booleans(), min_size=len(circuit.inputs), max_size=len(circuit.inputs))
+    return circuit, draw(st.lists(tick.map(tuple), max_size=8))
