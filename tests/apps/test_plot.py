@@ -1,0 +1,145 @@
+"""The plot shows what the recording says, is the same each time, and says what is missing."""
+
+from __future__ import annotations
+
+import builtins
+import math
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgb
+from matplotlib.image import imread
+
+from rplan.apps.drawing import plot
+from sim.recording import Recording
+
+BOX = [[-1, -0.5], [1, -0.5], [1, 0.5], [-1, 0.5]]
+WORLD: dict[str, Any] = {
+    "bounds": [-5, -5, 10, 5],
+    "robot": {"radius": 0.35},
+    "things": [{"id": "car-1", "kind": "car", "shape": {"polygon": BOX}, "pose": [2, 3, 0.3], "height": 1.4}],
+    "movers": [
+        {"id": "donor", "kind": "donor", "shape": {"circle": 0.25}, "pose": [7, 0, 0], "height": 0.9},
+        {"id": "can", "kind": "trashcan", "shape": {"circle": 0.3}, "pose": [3, -4, 0], "height": 0.8},
+    ],
+    "donor": {"id": "donor", "reach": 0.9},
+    "home": [0, 0, 0],
+}
+PLAN = {"name": "find $x$", "outputs": ["goal", "action"]}
+HEADER: dict[str, Any] = {"format": 1, "plan": PLAN, "scenario": {"name": "lot"}, "seed": 3, "world": WORLD}
+
+
+def tick(n: int) -> dict[str, Any]:
+    """Out for 30 s, a second of runaway at 20 s, loading, and back."""
+    out = n * 0.02 if n < 300 else 6.0 - (n - 300) * 0.02
+    world = {
+        "robot": [out, 0.3 * math.sin(n / 30), 0.0],
+        "odometry": [out * 1.02, 0.3 * math.sin(n / 30), 0.0],
+        "movers": {"donor": [7.0, 0.0, 0.0]} | ({"can": [3.0, -4.0 + n / 100, 0.0]} if n < 200 else {}),
+        "contacts": [{"thing": "can", "driven_into": True}] if 204 <= n < 206 else [],
+        "on_board": n >= 300,
+        "stage": "to the donor" if n < 300 else "return",
+    }
+    action = "(flee-from-danger)" if 200 <= n < 210 else "(go)" if n < 550 else None
+    return {
+        "tick": n,
+        "t": n / 10,
+        "world": world,
+        "plan": {"outputs": {"action": action, "goal": None}, "hole": n == 50},
+    }
+
+
+@pytest.fixture
+def run() -> Recording:
+    return Recording(HEADER, [tick(n) for n in range(600)])
+
+
+def colour_share(path: Path, colour: str) -> float:
+    """Share of the picture's pixels that have just this colour."""
+    return float((np.abs(imread(path)[..., :3] - to_rgb(colour)).max(axis=2) < 0.01).mean())
+
+
+def test_the_picture_shows_each_competence_in_its_colour(run: Recording, tmp_path: Path) -> None:
+    plot.draw(run, tmp_path / "run.png")
+    assert colour_share(tmp_path / "run.png", plot.PALETTE[0]) > 0.01, "the way and the band of (go)"
+    assert colour_share(tmp_path / "run.png", plot.DANGER) > 0.0005, "the runaway"
+    assert colour_share(tmp_path / "run.png", plot.OPEN) > 0.0005, "where the action is left open"
+    assert colour_share(tmp_path / "run.png", plot.THING) > 0.005, "the parked car"
+
+
+def test_the_picture_speaks_of_what_happened(run: Recording) -> None:
+    words = texts(run)
+    assert {"find $x$ · lot · seed 3", "on board at 0:30.0, end at 0:59.9"} <= words
+    assert {"donor", "start, home", "on board 0:30.0", "runaway 0:20.0", "contact 0:20.4"} <= words
+    assert {"to the donor", "return", "go  90%", "flee-from-danger  2%", "left open  8%", "hole  1×"} <= words
+
+
+def test_a_verdict_takes_the_place_of_the_moments(run: Recording) -> None:
+    assert "fetched in 4:10" in texts(run, "fetched in 4:10")
+
+
+def texts(recording: Recording, verdict: str = "") -> set[str]:
+    """All words that are drawn."""
+    import matplotlib.text
+
+    figure = plot._figure(recording, plot._track(recording), verdict)
+    return {text.get_text() for text in figure.findobj(matplotlib.text.Text) if text.get_text()}
+
+
+def test_the_same_run_gives_the_same_picture(run: Recording, tmp_path: Path) -> None:
+    plot.draw(run, tmp_path / "a.png")
+    plot.draw(run, tmp_path / "b.png")
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+
+
+def test_a_hand_written_brain_in_a_bare_world_is_drawn_too(tmp_path: Path) -> None:
+    ticks = [{"t": n / 10, "world": {"robot": [n / 50, 0.0, 0.0]}, "plan": None} for n in range(20)]
+    plot.draw(Recording({"format": 1}, ticks), tmp_path / "run.png")
+    assert colour_share(tmp_path / "run.png", plot.PALETTE[0]) > 0.005
+
+
+def test_the_colours_go_by_how_long_a_competence_drove() -> None:
+    bands = plot._bands(["(a)", "(b)", "(b)", None, "(run-away)"])
+    assert plot._colours(bands) == {
+        "(b)": plot.PALETTE[0],
+        "(a)": plot.PALETTE[1],
+        None: plot.OPEN,
+        "(run-away)": plot.DANGER,
+    }
+
+
+def test_odometry_is_laid_on_the_first_true_pose() -> None:
+    track = plot._Track(pose=[(1.0, 2.0, math.pi / 2)], odometry=[(0.0, 0.0, 0.0), (3.0, 0.0, 0.0)])
+    np.testing.assert_allclose(plot._believed(track), [(1.0, 2.0), (1.0, 5.0)], atol=1e-12)
+
+
+def test_nothing_to_draw_is_a_clear_error(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="no ticks"):
+        plot.draw(Recording(HEADER, []), tmp_path / "run.png")
+
+
+def test_without_matplotlib_it_says_how_to_get_it(
+    run: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real: Callable[..., Any] = builtins.__import__
+
+    def without(name: str, *rest: Any) -> Any:
+        if name.startswith("matplotlib"):
+            raise ModuleNotFoundError("No module named 'matplotlib'", name="matplotlib")
+        return real(name, *rest)
+
+    for name in [name for name in sys.modules if name.startswith("matplotlib")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setattr(builtins, "__import__", without)
+    with pytest.raises(ImportError, match=r"pip install 'rplan\[plot\]'"):
+        plot.draw(run, tmp_path / "run.png")
+    assert not (tmp_path / "run.png").exists()
+
+
+def test_a_place_that_cannot_be_written_is_an_os_error(run: Recording, tmp_path: Path) -> None:
+    with pytest.raises(OSError):
+        plot.draw(run, tmp_path / "nowhere" / "run.png")
