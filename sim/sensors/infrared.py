@@ -79,7 +79,7 @@ class InfraredReader:
         visible = abs(offset) < HALF_FIELD and _in_sight(pose, beacon, donor, scene)
         signal = SIGNAL * (EDGE / math.dist((pose.x, pose.y), beacon)) ** 2 * math.cos(offset) ** 2 if visible else 0.0
         strength = max(0.0, signal / self._background(pose, beacon, donor, scene) + self._build.sd * noise)
-        detected = visible and strength > HEARD
+        detected = bool(visible and strength > HEARD)
         measured = offset + self._build.offset_sd * offset_noise if detected else math.nan
         return IrReading(stamp, True, pan, detected, measured, strength)
 

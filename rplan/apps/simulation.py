@@ -1,0 +1,201 @@
+"""A plan drives a robot through a world, and what is to be said of it afterwards.
+
+Takes: a compiled plan, a scenario, a seed. Gives: a `Run`: the judge's verdict, ticks and switches of each competence,
+and for each switch what made it. Leaves alone: how it is shown; see commands/simulate.py.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from importlib.metadata import version
+from pathlib import Path
+from time import perf_counter
+
+from rplan.apps.wiring import PlanBrain, plan_header
+from rplan.driver import Compiled
+from rplan.runtime.tick import Decision
+from rplan.ways.way import TakenWay
+from sim.episode import Episode
+from sim.judge import Verdict
+from sim.recording import Recorder
+from sim.scenarios.scenario import Scenario, loads
+
+OPEN = "(nothing)"
+"""Shown for a command channel that a tick leaves without a competence."""
+
+
+@dataclass(frozen=True, slots=True)
+class World:
+    """A scenario with the text that it was read from."""
+
+    scenario: Scenario
+    text: str
+
+
+@dataclass(slots=True)
+class Share:
+    """How much of a run a competence had."""
+
+    ticks: int = 0
+    switches: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Switch:
+    """At `time` [s] `before` gave way to `after`, since `because`; rules: what the way then served."""
+
+    time: float
+    before: str
+    after: str
+    because: str
+    rules: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One episode. shares: competence -> its part; holes: ticks without an open way; wall: seconds it took to run."""
+
+    plan: str
+    scenario: str
+    seed: int
+    verdict: Verdict
+    ticks: int
+    shares: Mapping[str, Share]
+    switches: tuple[Switch, ...]
+    holes: int
+    faults: tuple[str, ...]
+    wall: float
+
+    @property
+    def real_time_factor(self) -> float:
+        """Simulated seconds a second."""
+        return self.verdict.duration / self.wall if self.wall > 0 else float("inf")
+
+
+def load_world(path: Path) -> World:
+    """The scenario in a file; `ScenarioError`, `OSError`."""
+    text = path.read_bytes().decode("utf-8", errors="replace")
+    return World(loads(text, path.name), text)
+
+
+@dataclass(slots=True)
+class _Watch:
+    """Sees every tick: counts, explains switches, records."""
+
+    brain: PlanBrain
+    recorder: Recorder | None
+    progress: Callable[[float, str], None] | None
+    channels: tuple[str, ...]
+    shares: dict[str, Share] = field(default_factory=dict)
+    switches: list[Switch] = field(default_factory=list)
+    holes: int = 0
+    faults: list[str] = field(default_factory=list)
+    ticks: int = 0
+    last: Decision | None = None
+
+    def observe(self, episode: Episode) -> None:
+        if not episode.over:
+            self._count(episode.time)
+        if self.recorder is not None:
+            self.recorder.tick(episode.time, episode.snapshot(), episode.note)
+        if self.progress is not None and self.ticks % 50 == 0:
+            doing = self._doing(self.last)[0] if self.channels and self.last else ""
+            self.progress(episode.time, f"{episode.judge.stage} {doing}")
+
+    def _doing(self, decision: Decision | None) -> list[str]:
+        if decision is None:
+            return [OPEN] * len(self.channels)
+        terms = [decision.sent[channel] for channel in self.channels]
+        return [OPEN if term is None else term.text for term in terms]
+
+    def _count(self, time: float) -> None:
+        tick = self.brain.tick
+        assert tick is not None
+        decision = tick.decision
+        self.ticks += 1
+        self.holes += decision.hole
+        self.faults += [f"{time:.1f} s: ({fault.competence}): {fault.message}" for fault in tick.faults]
+        before = self._doing(self.last)
+        for was, now in zip(before, self._doing(decision), strict=True):
+            share = self.shares.setdefault(now, Share())
+            share.ticks += 1
+            if was != now:
+                share.switches += 1
+                way = self.brain.trace.way(decision)
+                because = self._because(decision, way) if self.last is not None else "it is the first tick"
+                self.switches.append(Switch(time, was, now, because, way.rules))
+        self.last = decision
+
+    def _because(self, decision: Decision, way: TakenWay) -> str:
+        """The conditions that changed with the switch and that one of the two ways asks."""
+        assert self.last is not None
+        before = self.brain.trace.way(self.last)
+        asked = [branch.condition for branch in (*way.branches, *before.branches)]
+        atoms = self.brain.compiled.ways.atoms
+        changed = [
+            f"{atom.text} became {'true' if now else 'false'}"
+            for atom, was, now in zip(atoms, self.last.inputs, decision.inputs, strict=True)
+            if was != now and any(atom.text in condition for condition in asked)
+        ]
+        return "; ".join(changed) or "what was kept changed"
+
+
+def simulate(
+    compiled: Compiled,
+    world: World,
+    seed: int,
+    *,
+    until: float | None = None,
+    record: Path | None = None,
+    progress: Callable[[float, str], None] | None = None,
+) -> Run:
+    """Drive one episode. Raises `PlanError` (unbound functions), `ScenarioError` (no layout for this seed), `OSError`."""
+    brain = PlanBrain(compiled)
+    episode = Episode(world.scenario, seed)
+    channels = tuple(o.name for o in compiled.goals.outputs if o.type is not None and o.type.name == "command")
+    with _recorder(record, compiled, world, episode) as recorder:
+        watch = _Watch(brain, recorder, progress, channels)
+        begin = perf_counter()
+        try:
+            verdict = episode.run(brain, until, watch)
+        except KeyboardInterrupt:
+            verdict = episode.judge.verdict(f"stopped by hand at {episode.time:.0f} s")
+        finally:
+            brain.close()
+        wall = perf_counter() - begin
+    return Run(
+        plan=compiled.goals.name,
+        scenario=world.scenario.name,
+        seed=seed,
+        verdict=verdict,
+        ticks=watch.ticks,
+        shares=watch.shares,
+        switches=tuple(watch.switches),
+        holes=watch.holes,
+        faults=tuple(watch.faults),
+        wall=wall,
+    )
+
+
+@contextmanager
+def _recorder(path: Path | None, compiled: Compiled, world: World, episode: Episode) -> Iterator[Recorder | None]:
+    if path is None:
+        yield None
+        return
+    with Recorder(path, _header(compiled, world, episode)) as recorder:
+        yield recorder
+
+
+def _header(compiled: Compiled, world: World, episode: Episode) -> Mapping[str, object]:
+    digest = hashlib.sha256(compiled.source.text.encode()).hexdigest()
+    return {
+        "plan": plan_header(compiled, digest),
+        "scenario": {"name": world.scenario.name, "text": world.text},
+        "seed": episode.seed,
+        "versions": {name: version(name) for name in ("rplan", "numpy", "pymunk")},
+        "period": compiled.goals.period,
+        "world": episode.header(),
+    }

@@ -1,0 +1,136 @@
+"""Where plans, behaviours and worlds meet.
+
+Takes: libraries of behaviours, compiled plans. Gives: their signatures for the compiler, a crew for the runtime, and
+`PlanBrain`, a plan as the brain of an episode. Leaves alone: which robot or world; a brain sees readings only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from behaviours.catalogue import LIBRARIES
+from behaviours.interface import STOP, Command, Competence, Library, Pose, Reading, Workshop
+from rplan.backends.python import PythonEngine
+from rplan.driver import Compiled, compile_plan
+from rplan.goals.signature import FunctionSignature, Libraries, LibrarySignature, ParameterSignature
+from rplan.lang.diagnostic import Diagnostic, PlanError
+from rplan.lang.plan import Type
+from rplan.lang.reader import source_from_file
+from rplan.runtime.controller import Controller, Tick, UnboundError
+from rplan.runtime.robot import Channels, Crew
+from rplan.runtime.tick import Decider
+from rplan.runtime.trace import Trace
+
+
+def signature(library: Library) -> LibrarySignature:
+    """A library as the compiler sees it."""
+    functions = tuple(
+        FunctionSignature(f.name, (), Type(f.type, f.unit), f.doc, f.actuators, f.reads, library.name)
+        for f in library.functions
+    )
+    parameters = tuple(ParameterSignature(p.name, Type(p.type, p.unit), p.default, p.doc) for p in library.parameters)
+    return LibrarySignature(library.name, functions, parameters, library.doc)
+
+
+def signatures() -> Libraries:
+    """Every library that there is."""
+    return {name: signature(library) for name, library in LIBRARIES.items()}
+
+
+def compile_file(path: Path, *, strict: bool = False, allow_holes: bool = False) -> Compiled:
+    """The plan in a file, compiled against every library; `PlanError`, `OSError`."""
+    return compile_plan(source_from_file(path), signatures(), strict=strict, allow_holes=allow_holes)
+
+
+def decider(compiled: Compiled) -> Decider:
+    """A plan that decides, run by generated Python."""
+    return Decider(compiled.goals, compiled.ways.atoms, compiled.circuit, PythonEngine(compiled.circuit))
+
+
+def crew(compiled: Compiled) -> Crew[Command]:
+    """The libraries of a plan brought to life; `PlanError` where a library refuses its parameters."""
+    workshop = Workshop()
+    percepts: dict[str, Callable[[], bool | float]] = {}
+    values: dict[str, Callable[[Channels], object]] = {}
+    competences: dict[str, Competence] = {}
+    refused: list[Diagnostic] = []
+    for bound in compiled.goals.libraries:
+        try:
+            offer = LIBRARIES[bound.name].build(bound.settings, workshop)
+        except ValueError as error:
+            refused.append(Diagnostic("bad-parameter", "error", f"`{bound.name}`: {error}", bound.span))
+            continue
+        percepts |= offer.percepts
+        values |= offer.values
+        competences |= offer.competences
+    if refused:
+        raise PlanError(refused)
+    return Crew(percepts, values, competences, workshop.estimators, STOP)
+
+
+class PlanBrain:
+    """A plan as the brain of an episode. `PlanError` if nothing brings a function of the plan to life."""
+
+    def __init__(self, compiled: Compiled) -> None:
+        self.compiled = compiled
+        self.trace = Trace(compiled.ways, _show)
+        self.tick: Tick[Command] | None = None
+        self._controller = self._new()
+
+    def _new(self) -> Controller[Command]:
+        try:
+            return Controller(decider(self.compiled), crew(self.compiled))
+        except UnboundError as error:
+            raise PlanError(
+                Diagnostic(
+                    "unbound",
+                    "error",
+                    f"nothing brings `{term.text}` to life",
+                    term.span,
+                    hint="`use` a library that offers it",
+                )
+                for term in error.terms
+            ) from None
+
+    def reset(self) -> None:
+        """A new crew: nothing lasts from one run to the next."""
+        self.tick = None
+        self._controller = self._new()
+
+    def step(self, reading: Reading) -> Command:
+        """One tick of the plan."""
+        self.tick = self._controller.step(reading)
+        return self.tick.command
+
+    def note(self) -> str:
+        """The last tick as JSON text."""
+        return "null" if self.tick is None else self.trace.note(self.tick)
+
+    def close(self) -> None:
+        """Stop what runs."""
+        self._controller.close()
+
+
+def plan_header(compiled: Compiled, sha256: str) -> Mapping[str, object]:
+    """What a recording says of its plan."""
+    goals = compiled.goals
+    return {
+        "name": goals.name,
+        "file": Path(compiled.source.name).name,
+        "text": compiled.source.text,
+        "sha256": sha256,
+        "inputs": [atom.text for atom in compiled.ways.atoms],
+        "outputs": [output.name for output in goals.outputs],
+        "rules": [{"rule": r.head, "line": r.span.line, "end_line": r.span.end_line} for r in goals.rules],
+    }
+
+
+def _show(value: object) -> object:
+    match value:
+        case Pose(x, y, theta):
+            return [round(x, 3), round(y, 3), round(theta, 4)]
+        case bool() | int() | float() | str() | None:
+            return value
+        case _:
+            return str(value)
