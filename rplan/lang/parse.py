@@ -12,6 +12,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import PurePath
 from typing import Literal, TypeVar
 
@@ -483,9 +484,7 @@ class _Parser:
             case ListForm(items=(condition, body)):
                 return _Branch(self.condition(condition), self.goal(body, level + 1))
             case ListForm(items=items):
-                parts = len(items)
-                message = f"a clause of `cond` takes a condition and a goal; here {_parts(parts)}"
-                self.error("wrong-parts", message, form.span)
+                self._wrong_parts("a clause of `cond` takes a condition and a goal", form, items)
             case _:
                 self._unexpected(form, "a clause `(CONDITION GOAL)`", "wrong-parts")
         return _Branch(Truth(False, form.span), Anything(form.span))
@@ -548,7 +547,7 @@ class _Parser:
     def _compare(self, form: ListForm, comparator: Comparator) -> Condition:
         rest = form.items[1:]
         if len(rest) != 2:
-            self.error("wrong-parts", f"`{comparator}` compares two numbers; here {_parts(len(rest))}", form.span)
+            self._wrong_parts(f"`{comparator}` compares two numbers", form, rest)
             return Truth(False, form.span)
         return Compare(comparator, self._operand(rest[0]), self._operand(rest[1]), form.span)
 
@@ -585,7 +584,7 @@ class _Parser:
         if name not in _RESERVED:
             arguments = form.items[1:] if isinstance(form, ListForm) else ()
             return Call(name, tuple(self.expression(one) for one in arguments), form.span)
-        known = _known(wanted, CONDITION_FORMS)
+        known = _known(wanted, CONDITION_FORMS) if wanted == "condition" else _VALUES_HINT
         if name in _MEMORY:
             self.error("unknown-form", f"`{name}`: conditions with memory are not supported", form.span, known)
         elif name in _ARITHMETIC:
@@ -646,8 +645,7 @@ class _Parser:
         limit = least if most == -1 else most
         if len(rest) >= least and (limit is None or len(rest) <= limit):
             return True
-        message = f"`{head}` takes {_TAKES[head]}; here {_parts(len(rest))}"
-        self.error("wrong-parts", message, form.span, _HINTS.get((head, len(rest)), ""))
+        self._wrong_parts(f"`{head}` takes {_TAKES[head]}", form, rest, _HINTS.get((head, len(rest)), ""))
         return False
 
     def _name(self, form: Form, owner: str) -> str:
@@ -664,6 +662,11 @@ class _Parser:
         return name
 
     # --- what went wrong ---
+
+    def _wrong_parts(self, takes: str, form: Form, parts: Sequence[Form], hint: str = "") -> None:
+        if not any(isinstance(part, Broken) for part in parts):
+            hint = _spaced_unit(parts) or hint
+            self.error("wrong-parts", f"{takes}; here {_parts(len(parts))}", form.span, hint)
 
     def _unexpected(self, form: Form, wanted: str, code: str, hint: str = "") -> None:
         """One error that something else was wanted here; none where it has been reported already."""
@@ -706,6 +709,7 @@ class _Branch:
     goal: Goal
 
 
+_VALUES_HINT = "a value is a number, `true`, `false` or a call `(NAME ...)`"
 _TYPES_HINT = "the types: bool, (number UNIT), pose, command, symbol"
 
 
@@ -723,6 +727,14 @@ def _known(what: str, names: Sequence[str]) -> str:
 
 def _parts(number: int) -> str:
     return "are none" if number == 0 else "is 1 part" if number == 1 else f"are {number} parts"
+
+
+def _spaced_unit(parts: Sequence[Form]) -> str:
+    """A hint where a number and its unit stand apart."""
+    for number, unit in pairwise(parts):
+        if isinstance(number, Numeral) and isinstance(unit, Symbol) and not number.unit and unit.name in UNITS:
+            return f"a unit follows its number without a space: `{number.text}{unit.name}`"
+    return ""
 
 
 def _first(span: Span) -> tuple[Related, ...]:

@@ -41,6 +41,8 @@ from rplan.lang.plan import (
 from rplan.lang.units import canonical_number
 
 WIDTH = 100
+NARROWEST = 40
+"""Room that is left for a line however far it is indented."""
 
 Sexp = str | tuple["Sexp", ...]
 """An S-expression yet to be laid out."""
@@ -193,7 +195,7 @@ def _fits(sexp: Sexp, room: int) -> int:
 
 def _laid_out(sexp: Sexp, indent: int) -> str:
     """On one line where it fits; else the words before the first list stay, and the other parts get a line each."""
-    if isinstance(sexp, str) or _fits(sexp, WIDTH - indent) >= 0:
+    if isinstance(sexp, str) or _fits(sexp, max(WIDTH - indent, NARROWEST)) >= 0:
         return _flat(sexp)
     lead = next((i for i, part in enumerate(sexp) if i and not isinstance(part, str)), len(sexp))
     lead += sexp[0] in ("defgoalr", "defcond", "declare")

@@ -311,6 +311,9 @@ class _Fold:
             self._pop(word)
         elif kind == "OPEN_TEXT":
             self._open_text(word)
+        elif word == "|#":
+            hint = "comments begin with `#|`"
+            self.error("unopened-comment", "`|#` ends a comment that never began", self.span(word), hint)
         else:
             self.items.append(self.atoms[kind](word))
 
@@ -393,9 +396,6 @@ class _Fold:
         if word[0] == _UNREADABLE:
             self.spoilt = True
             return Broken(span)
-        if word == "|#":
-            self.error("unopened-comment", "`|#` ends a comment that never began", span, "comments begin with `#|`")
-            return Broken(span)
         return Symbol(str(word), span)
 
     def _number(self, word: Token) -> Form:
@@ -408,17 +408,17 @@ class _Fold:
         return Numeral(value, unit, str(word), span)
 
     def _text(self, word: Token) -> Form:
-        span = self.span(word)
         body = word[1:-1]
-        if "\\" not in body:
-            return Text(str(body), span)
-        for escape in _ESCAPE.finditer(body):
-            if escape[1] not in _ESCAPES:
-                place = _span_at(self.source, (word.start_pos or 0) + 1 + escape.start(), 2)
-                hint = '`\\"`, `\\\\` and `\\n` are known'
-                self.error("bad-escape", "an escape that strings do not have", place, hint)
-                return Broken(span)
-        return Text(_ESCAPE.sub(lambda escape: _ESCAPES[escape[1]], body), span)
+        if "\\" in body:
+            body = _ESCAPE.sub(lambda escape: self._escaped(word, escape), body)
+        return Text(str(body), self.span(word))
+
+    def _escaped(self, word: Token, escape: re.Match[str]) -> str:
+        if escape[1] not in _ESCAPES:
+            place = _span_at(self.source, (word.start_pos or 0) + 1 + escape.start(), 2)
+            hint = '`\\"`, `\\\\` and `\\n` are known'
+            self.error("bad-escape", "an escape that strings do not have", place, hint)
+        return _ESCAPES.get(escape[1], escape[0])
 
 
 _ESCAPE = re.compile(r"\\(.)", re.DOTALL)

@@ -1,0 +1,48 @@
+"""Which names are close (L6)."""
+
+from __future__ import annotations
+
+import pytest
+
+from rplan.lang.suggest import close
+
+
+@pytest.mark.rule("L6")
+@pytest.mark.parametrize("slip", ["runawayx", "runway", "runaqay", "runaawy", "unaway", "runawa", "urnaway"])
+def test_one_slip_is_close(slip: str) -> None:
+    assert close(slip, ["retrieve", "runaway"]) == "runaway"
+
+
+@pytest.mark.rule("L6")
+@pytest.mark.parametrize("other", ["runaway", "run-awa", "runawyax", "yawanur", "rnuwaay", "r", ""])
+def test_the_same_name_or_two_slips_are_not_close(other: str) -> None:
+    assert close(other, ["runaway"]) is None
+
+
+@pytest.mark.rule("L6")
+@pytest.mark.parametrize(
+    ("name", "other"), [("pose1", "pose2"), ("pose12", "pose1"), ("goals", "goals2"), ("a12bc", "a21bc")]
+)
+def test_digits_are_meant(name: str, other: str) -> None:
+    assert close(name, [other]) is None
+    assert close(other, [name]) is None
+
+
+@pytest.mark.rule("L6")
+def test_short_names_are_never_close() -> None:
+    assert close("goat", ["goal"]) is None
+    assert close("goals", ["goal"]) is None
+    assert close("goals", ["goats"]) == "goats"
+
+
+def test_a_caller_may_ask_for_shorter_names() -> None:
+    assert close("iff", ["do", "if"], shortest=2) == "if"
+
+
+def test_a_name_that_exists_is_not_close_to_another() -> None:
+    assert close("search", ["search2", "searchx", "search"]) is None
+
+
+def test_the_first_of_several_is_given() -> None:
+    assert close("boxes", ["boxed", "foxes"]) == "boxed"
+    assert close("boxes", ["foxes", "boxed"]) == "foxes"
