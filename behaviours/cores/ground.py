@@ -25,7 +25,7 @@ class GroundSettings:
     start: float = 6 * FOOT
     cut_off: float = 25 * FOOT
     reach: float = 9.5
-    object_height: float = 0.2
+    object_height: float = 0.25
     pan_span: float = math.radians(2.0)
     pans: int = 4
     error_linear: float = 0.01

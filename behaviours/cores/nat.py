@@ -19,7 +19,6 @@ from behaviours.cores.geometry import bearing, distance
 from behaviours.interface import Pose, wrap
 
 Spin = Literal["cw", "ccw"]
-Pair = tuple[int, int]
 Memory = Mapping[int, tuple[Spin, float]]
 """Circle -> the spin of its last group, and the stamp [s] until which that spin is locked."""
 
@@ -31,7 +30,7 @@ class NatSettings:
     robot_width: float = 0.7
     clearance: float = 0.25
     group_margin: float = 0.22
-    group_hysteresis: float = 0.15
+    group_hysteresis: float = 0.3
     spin_hysteresis: float = 0.5
     look_ahead: float = 3.0
     max_speed: float = 0.2
@@ -61,11 +60,14 @@ class Group:
 
 @dataclass(frozen=True, slots=True)
 class NatPlan:
-    """A plan to go to the goal: groups by distance, the admissible headings, the heading [rad, frame of the goal]."""
+    """A plan to go to the goal: groups by distance, the admissible headings, the heading [rad, frame of the goal].
+
+    grouping: circle -> number of its group, of all circles; the numbers mean nothing else.
+    """
 
     goal: Pose
     circles: tuple[Circle, ...]
-    links: frozenset[Pair]
+    grouping: Mapping[int, int]
     groups: tuple[Group, ...]
     interval: tuple[float, float]
     heading: float
@@ -84,42 +86,53 @@ def make_plan(
     circles: Sequence[Circle],
     robot: Pose,
     goal: Pose,
-    links: frozenset[Pair],
+    before: Mapping[int, int],
     memory: Memory,
     now: float,
     settings: NatSettings,
 ) -> NatPlan:
-    """The plan from the robot to the goal. links, memory: of the plan before (empty at first); now [s]."""
-    joined = link(circles, links, settings)
-    spans = [_spans(members, circles, joined, robot, goal, settings) for members in components(len(circles), joined)]
+    """The plan from the robot to the goal. before, memory: grouping and spins of the plan before (empty at first); now [s]."""
+    joined = link(circles, before, settings)
+    found = components(len(circles), joined)
+    grouping = {circles[i].ident: at for at, members in enumerate(found) for i in members}
+    spans = [_spans(members, circles, joined, robot, goal, settings) for members in found]
     groups = [_assess(span, memory, now, settings) for span in spans if span]
     groups.sort(key=lambda g: g.distance)
     heeded, interval = _bound(groups, settings)
     heading = wrap(bearing(robot, goal) + max(interval[0], min(0.0, interval[1])))
-    pairs = frozenset((circles[i].ident, circles[j].ident) for i, j in joined_pairs(joined))
-    return NatPlan(goal, tuple(circles), pairs, heeded, interval, heading)
+    return NatPlan(goal, tuple(circles), grouping, heeded, interval, heading)
 
 
 # --- grouping -------------------------------------------------------------------------------------
 
 
-def link(circles: Sequence[Circle], before: frozenset[Pair], settings: NatSettings) -> tuple[tuple[int, ...], ...]:
-    """For each circle the places of those between which and it the robot does not fit."""
+def link(circles: Sequence[Circle], before: Mapping[int, int], settings: NatSettings) -> tuple[tuple[int, ...], ...]:
+    """For each circle the places of those between which and it the robot does not fit.
+
+    before: circle -> its group in the plan before. What was one group stays one up to a wider gap; circles come and go
+    from sweep to sweep, so a new one counts with those that it overlaps.
+    """
     apart = settings.robot_width + 2 * settings.group_margin
-    neighbours: list[list[int]] = [[] for _ in circles]
-    for i, a in enumerate(circles):
-        for j in range(i + 1, len(circles)):
-            b = circles[j]
-            slack = settings.group_hysteresis if (a.ident, b.ident) in before else 0.0
-            if math.hypot(a.x - b.x, a.y - b.y) - a.radius - b.radius < apart + slack:
-                neighbours[i].append(j)
-                neighbours[j].append(i)
-    return tuple(map(tuple, neighbours))
+    gaps = [[math.hypot(a.x - b.x, a.y - b.y) - a.radius - b.radius for b in circles] for a in circles]
+    grouped = _grouped_before(circles, gaps, before)
+    count = range(len(circles))
+    return tuple(
+        tuple(
+            j
+            for j in count
+            if j != i and gaps[i][j] < apart + (settings.group_hysteresis if grouped[i] & grouped[j] else 0.0)
+        )
+        for i in count
+    )
 
 
-def joined_pairs(neighbours: Sequence[Sequence[int]]) -> list[Pair]:
-    """Each link once, the smaller place first."""
-    return [(i, j) for i, those in enumerate(neighbours) for j in those if i < j]
+def _grouped_before(
+    circles: Sequence[Circle], gaps: Sequence[Sequence[float]], before: Mapping[int, int]
+) -> list[frozenset[int]]:
+    """For each circle the groups in which it, or what it overlaps, was before."""
+    count = range(len(circles))
+    overlapping = [[j for j in count if gaps[i][j] <= 0.0] for i in count]
+    return [frozenset(before[circles[j].ident] for j in those if circles[j].ident in before) for those in overlapping]
 
 
 def components(count: int, neighbours: Sequence[Sequence[int]]) -> list[list[int]]:

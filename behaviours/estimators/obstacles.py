@@ -64,8 +64,8 @@ class Obstacles:
 
     def _make(self, pose: Pose, goal: Pose, now: float) -> NatPlan:
         same = self.plan is not None and distance(self.plan.goal, goal) <= self.settings[2].new_goal
-        links = self.plan.links if self.plan is not None else frozenset()
-        return make_plan(self.memory.circles, pose, goal, links, self._spins if same else {}, now, self.settings[1])
+        before = self.plan.grouping if self.plan is not None else {}
+        return make_plan(self.memory.circles, pose, goal, before, self._spins if same else {}, now, self.settings[1])
 
     def _replan(self, pose: Pose, goal: Pose, now: float) -> None:
         self.plan = self._make(pose, goal, now)
