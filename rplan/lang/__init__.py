@@ -1,0 +1,1 @@
+"""Text to `Plan`. Takes: a source text. Gives: syntax with places, or errors. Leaves alone: what names mean."""
