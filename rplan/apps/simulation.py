@@ -152,7 +152,10 @@ def simulate(
     record: Path | None = None,
     progress: Callable[[float, str], None] | None = None,
 ) -> Run:
-    """Drive one episode. Raises `PlanError` (unbound functions), `ScenarioError` (no layout for this seed), `OSError`."""
+    """Drive one episode.
+
+    Raises `PlanError` (unbound functions), `ScenarioError` (no layout for this seed), `OSError`.
+    """
     brain = PlanBrain(compiled)
     episode = Episode(world.scenario, seed)
     channels = tuple(o.name for o in compiled.goals.outputs if o.type is not None and o.type.name == "command")

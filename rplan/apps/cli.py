@@ -1,0 +1,82 @@
+"""The command line: `rplan COMMAND …`.
+
+Takes: arguments. Gives: exit codes of L24 and clear lines, never a traceback. Leaves alone: what commands do; each is
+a file of commands/, imported only when it is called, so that `rplan --help` answers at once.
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+
+import click
+
+from rplan.lang.diagnostic import InternalError
+
+COMMANDS = {
+    "check": "Say what is wrong with a plan before it runs.",
+    "compile": "Compile a plan and say what a tick costs.",
+    "list": "List plans, libraries and what they offer.",
+    "simulate": "Drive a robot through a world by a plan.",
+    "tick": "Run a plan alone: percepts in, outputs out, one JSON object a line.",
+    "ways": "List the ways of a plan; --paper counts them as the paper does.",
+}
+INTERNAL = 70
+
+
+class Commands(click.Group):
+    """Commands by name, loaded late."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:  # noqa: ARG002
+        if name not in COMMANDS:
+            return None
+        command = import_module(f"rplan.apps.commands.{name}").command
+        assert isinstance(command, click.Command)
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if args and args[0] not in COMMANDS and not args[0].startswith("-"):
+            from difflib import get_close_matches
+
+            meant = get_close_matches(args[0], list(COMMANDS), 1)
+            hint = f" Did you mean '{meant[0]}'?" if meant else ""
+            ctx.fail(f"There is no command '{args[0]}'.{hint} There are: {', '.join(COMMANDS)}.")
+        return super().resolve_command(ctx, args)
+
+
+@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="rplan")
+def cli() -> None:
+    """Plans for robots: goals, priorities and reduction rules, checked before they run and explained afterwards."""
+
+
+def main() -> None:
+    """The entry point. A fault of rplan's own says so and exits with 70; a broken pipe ends quietly."""
+    try:
+        cli()
+    except BrokenPipeError:
+        sys.stderr.close()
+        sys.exit(0)
+    except InternalError as error:
+        _report(error)
+    except Exception as error:
+        _report(error)
+
+
+def _report(error: Exception) -> None:
+    trace = error.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    where = f" ({trace.tb_frame.f_globals.get('__name__')}:{trace.tb_lineno})" if trace is not None else ""
+    click.echo(f"rplan has a fault of its own: {type(error).__name__}: {error}{where}", err=True)
+    click.echo("Nothing is wrong with your plan as far as is known; please report this with the plan.", err=True)
+    sys.exit(INTERNAL)

@@ -1,0 +1,28 @@
+"""`rplan check PLAN`: what is wrong with a plan, before it runs."""
+
+from __future__ import annotations
+
+import click
+
+from rplan.apps import talk
+from rplan.apps.files import plan_file
+
+
+@click.command("check", short_help="Say what is wrong with a plan before it runs.")
+@click.argument("plan")
+@click.option("--strict", is_flag=True, help="A name that nothing declares is an error.")
+@click.option("--allow-holes", is_flag=True, help="A hole is a warning.")
+@click.option("--json", "as_json", is_flag=True, help="For programs.")
+def command(plan: str, strict: bool, allow_holes: bool, as_json: bool) -> None:
+    """Check PLAN: malformed or untyped text, goals without a rule, circles, holes (with a witness), dead acts.
+
+    PLAN is a file, a folder with one plan, or the name of a plan that comes with rplan. Exit code 1 if it is wrong.
+    """
+    compiled = talk.compiled(plan_file(plan), strict=strict, allow_holes=allow_holes, as_json=as_json)
+    if as_json:
+        talk.result({"ok": True, "diagnostics": [talk.as_plain(d) for d in compiled.diagnostics]})
+    else:
+        holes = any(d.code == "hole" for d in compiled.diagnostics)
+        undecided = any(d.code == "not-decided" for d in compiled.diagnostics)
+        found = "holes allowed" if holes else "holes not decided" if undecided else "no hole"
+        click.echo(f"{compiled.goals.name}: the plan is sound ({found})")

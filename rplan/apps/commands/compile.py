@@ -1,0 +1,88 @@
+"""`rplan compile PLAN`: the circuit of a plan, and what a tick of it costs."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+import click
+
+from rplan.apps import talk
+from rplan.apps.drawing.dot import dot
+from rplan.apps.files import plan_file
+from rplan.backends.python import emit
+from rplan.circuit.circuit import Circuit, print_circuit
+from rplan.circuit.stats import stats
+from rplan.driver import Compiled
+from rplan.ways.coverage import Situations
+
+MOST_WAYS = 10_000
+
+
+@click.command("compile", short_help="Compile a plan and say what a tick costs.")
+@click.argument("plan")
+@click.option("--emit", "form", type=click.Choice(["sexp", "json", "python", "dot"]), help="Print the circuit so.")
+@click.option("-o", "--output", type=click.Path(dir_okay=False, writable=True), help="Write it to a file.")
+@click.option("--strict", is_flag=True, help="A name that nothing declares is an error.")
+@click.option("--allow-holes", is_flag=True, help="A hole is a warning.")
+@click.option("--json", "as_json", is_flag=True, help="The report for programs.")
+def command(plan: str, form: str | None, output: str | None, strict: bool, allow_holes: bool, as_json: bool) -> None:
+    """Compile PLAN. Without --emit a report: ways, gates, depth, operations a tick."""
+    compiled = talk.compiled(plan_file(plan), strict=strict, allow_holes=allow_holes, as_json=as_json)
+    if form is not None:
+        _write(_emitted(compiled.circuit, form), output)
+        return
+    costs = stats(compiled.circuit)
+    ways = sum(1 for _ in Situations(compiled.ways).taken_ways(MOST_WAYS))
+    if as_json:
+        talk.result({"plan": compiled.goals.name, "ways": ways, **asdict(costs)})
+        return
+    _write(_report(compiled, ways), output)
+
+
+def _report(compiled: Compiled, ways: int) -> str:
+    costs = stats(compiled.circuit)
+    more = " or more" if ways == MOST_WAYS else ""
+    rows = [
+        ("ways that can be taken", f"{ways:,}{more}"),
+        ("inputs", f"{costs.inputs:,}"),
+        ("outputs", f"{costs.outputs:,}"),
+        ("registers", f"{costs.registers:,}"),
+        ("gates", f"{costs.gates:,}"),
+        ("depth", f"{costs.depth:,}"),
+        ("operations a tick", f"{costs.operations:,}"),
+    ]
+    lines = [f"{compiled.goals.name}: a tick every {compiled.goals.period:g} s"]
+    return "\n".join(lines + [f"  {name:<24}{value:>10}" for name, value in rows]) + "\n"
+
+
+def _emitted(circuit: Circuit, form: str) -> str:
+    match form:
+        case "sexp":
+            return print_circuit(circuit)
+        case "python":
+            return emit(circuit)
+        case "dot":
+            return dot(circuit)
+        case _:
+            return _json(circuit)
+
+
+def _json(circuit: Circuit) -> str:
+    import json
+
+    value = {
+        "name": circuit.name,
+        "inputs": [{"name": p.name, "places": [str(s) for s in p.places]} for p in circuit.inputs],
+        "registers": [asdict(register) for register in circuit.registers],
+        "cells": [{"op": c.op.value, "operands": list(c.operands), "index": c.index} for c in circuit.cells],
+        "outputs": [{"name": p.name, "net": net, "places": [str(s) for s in p.places]} for p, net in circuit.outputs],
+    }
+    return json.dumps(value, indent=2, ensure_ascii=False) + "\n"
+
+
+def _write(text: str, output: str | None) -> None:
+    if output is None:
+        click.echo(text, nl=False)
+        return
+    with click.open_file(output, "w", encoding="utf-8") as file:
+        file.write(text)

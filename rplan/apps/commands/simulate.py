@@ -1,0 +1,241 @@
+"""`rplan simulate PLAN`: a plan drives a robot through a world, and the verdict."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
+
+import click
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from rplan.apps import talk
+from rplan.apps.files import InputError, plan_file, scenario_file, unreadable
+from rplan.apps.simulation import Run, World, load_world, simulate
+from rplan.driver import Compiled
+from rplan.lang.diagnostic import PlanError
+from sim.recording import read
+from sim.replay import write_replay
+from sim.scenarios.schema import ScenarioError
+
+TICK_SECONDS = 0.1
+NOT_DONE = 1
+
+
+@click.command("simulate", short_help="Drive a robot through a world by a plan.")
+@click.argument("plan")
+@click.option("--scenario", help="YAML file, or the name of one beside the plan. Default: the only one beside it.")
+@click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Everything by chance follows it.")
+@click.option("--until", type=click.FloatRange(0, min_open=True), help="Simulated seconds at most.")
+@click.option("--record", type=click.Path(dir_okay=False, path_type=Path), help="Write a recording (MCAP).")
+@click.option("--replay", type=click.Path(dir_okay=False, path_type=Path), help="Write a page that plays the run.")
+@click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Write a picture of the run (PNG).")
+@click.option("--allow-holes", is_flag=True, help="Drive a plan that has a hole.")
+@click.option("--json", "as_json", is_flag=True, help="The verdict for programs.")
+def command(
+    plan: str,
+    scenario: str | None,
+    seed: int,
+    until: float | None,
+    record: Path | None,
+    replay: Path | None,
+    plot: Path | None,
+    allow_holes: bool,
+    as_json: bool,
+) -> None:
+    """Drive a robot by PLAN through a scenario and say whether the task was done, and why each switch happened.
+
+    Exit code 0 only if the task is done.
+    """
+    path = plan_file(plan)
+    compiled = talk.compiled(path, allow_holes=allow_holes, as_json=as_json)
+    world = _world(scenario_file(scenario, path))
+    _check_targets(record, replay, plot)
+    with _recording(record, replay, plot) as recording:
+        run = _run(compiled, path, world, seed, until, recording)
+        if recording is not None:
+            _draw(recording, replay, plot, _line(run))
+    if as_json:
+        talk.result(_plain(run))
+    else:
+        _show(run, [target for target in (record, replay, plot) if target is not None])
+    raise SystemExit(0 if run.verdict.done else NOT_DONE)
+
+
+def _world(path: Path) -> World:
+    try:
+        return load_world(path)
+    except ScenarioError as error:
+        raise InputError("the scenario is wrong\n" + "\n".join(f"  {p}" for p in error.problems)) from None
+    except OSError as error:
+        unreadable(path, error)
+
+
+def _check_targets(*targets: Path | None) -> None:
+    """Say before the run, not after it, that a file cannot be written."""
+    for target in targets:
+        if target is not None and not target.resolve().parent.is_dir():
+            raise InputError(f"there is no folder {target.parent} to write {target.name} into")
+
+
+@contextmanager
+def _recording(record: Path | None, *pictures: Path | None) -> Iterator[Path | None]:
+    """Where the run is recorded: as the user wishes, or for as long as pictures are drawn from it."""
+    if record is not None or not any(pictures):
+        yield record
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        yield Path(folder) / "run.mcap"
+
+
+def _run(compiled: Compiled, path: Path, world: World, seed: int, until: float | None, record: Path | None) -> Run:
+    limit = world.scenario.time_limit if until is None else until
+    try:
+        with _progress(limit) as progress:
+            return simulate(compiled, world, seed, until=until, record=record, progress=progress)
+    except PlanError as error:
+        talk.wrong(error, path)
+    except ScenarioError as error:
+        raise InputError("\n".join(map(str, error.problems))) from None
+    except OSError as error:
+        unreadable(record or path, error)
+
+
+@contextmanager
+def _progress(limit: float) -> Iterator[Callable[[float, str], None] | None]:
+    """A bar on stderr with simulated time and phase; none where nobody looks."""
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield None
+        return
+    columns = (
+        TextColumn("{task.fields[now]:>6.0f} s"),
+        BarColumn(),
+        TextColumn("{task.description}"),
+        TimeElapsedColumn(),
+    )
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task("starting", total=limit, now=0.0)
+
+        def update(time: float, phase: str) -> None:
+            bar.update(task, completed=time, now=time, description=phase)
+
+        yield update
+
+
+def _draw(recording: Path, replay: Path | None, plot: Path | None, verdict: str) -> None:
+    if replay is not None:
+        try:
+            write_replay(read(recording), replay, verdict)
+        except OSError as error:
+            unreadable(replay, error)
+    if plot is not None:
+        from rplan.apps.drawing.plot import draw
+
+        try:
+            draw(read(recording), plot)
+        except OSError as error:
+            unreadable(plot, error)
+
+
+# --- the verdict ------------------------------------------------------------------------------------
+
+
+def _line(run: Run) -> str:
+    verdict = run.verdict
+    return f"done in {_time(verdict.duration)}" if verdict.done else f"not done: {verdict.reason}"
+
+
+def _time(seconds: float | None) -> str:
+    if seconds is None:
+        return "-"
+    return f"{int(seconds // 60)} min {seconds % 60:04.1f} s" if seconds >= 60 else f"{seconds:.1f} s"
+
+
+def phases(run: Run) -> list[tuple[str, float | None]]:
+    """Seconds of each phase of the errand; None for what was not reached."""
+    times = run.verdict.times
+    marks = [0.0, times.departure, times.arrival, times.loaded, times.home]
+    names = ["search, until departure", "to the donor (one way)", "hand-over", "return"]
+    spans: list[tuple[str, float | None]] = []
+    for name, begin, end in zip(names, marks, marks[1:], strict=False):
+        spans.append((name, None if begin is None or end is None else end - begin))
+    return [*spans, ("round trip", run.verdict.round_trip), ("in all", run.verdict.duration)]
+
+
+def _show(run: Run, written: list[Path]) -> None:
+    console = Console(file=sys.stdout, highlight=False, soft_wrap=False)
+    verdict = run.verdict
+    style, word = ("bold green", "DONE") if verdict.done else ("bold red", "NOT DONE")
+    reason = "the object was fetched and brought home" if verdict.done else verdict.reason
+    console.print(f"[{style}]{word}[/{style}]: {reason}")
+    console.print(f"{run.plan} in {run.scenario}, seed {run.seed}\n")
+    console.print(_verdict_table(run))
+    console.print(_share_table(run))
+    console.print(_switch_table(run))
+    for fault in run.faults[:10]:
+        console.print(f"[red]fault[/red] at {fault}", markup=True)
+    for path in written:
+        console.print(f"wrote {path}")
+
+
+def _verdict_table(run: Run) -> Table:
+    verdict = run.verdict
+    into = verdict.driven_into
+    table = Table(show_header=False, box=None, title="Verdict", title_justify="left", title_style="bold")
+    table.add_column()
+    table.add_column(justify="right")
+    for name, seconds in phases(run):
+        table.add_row(name, _time(seconds))
+    table.add_row("distance", f"{verdict.distance:.1f} m")
+    table.add_row("contacts", f"{len(verdict.contacts)} ({into} driven into)" if verdict.contacts else "0")
+    table.add_row("smallest clearance", f"{verdict.smallest_clearance:.2f} m")
+    table.add_row("ticks", f"{run.ticks:,}")
+    table.add_row("holes", f"{run.holes:,}")
+    table.add_row("faults of competences", f"{len(run.faults):,}")
+    table.add_row("real-time factor", f"{run.real_time_factor:.0f}")
+    return table
+
+
+def _share_table(run: Run) -> Table:
+    table = Table("competence", box=None, title="\nCompetences", title_justify="left", title_style="bold")
+    for name in ("ticks", "time", "switches to it"):
+        table.add_column(name, justify="right")
+    for name, share in run.shares.items():
+        table.add_row(name, f"{share.ticks:,}", _time(share.ticks * TICK_SECONDS), f"{share.switches:,}")
+    return table
+
+
+def _switch_table(run: Run) -> Table:
+    table = Table(box=None, title="\nSwitches, and why", title_justify="left", title_style="bold")
+    table.add_column("at", justify="right", no_wrap=True)
+    table.add_column("to")
+    table.add_column("because")
+    for switch in run.switches:
+        table.add_row(f"{switch.time:.1f} s", switch.after, switch.because)
+    return table
+
+
+def _plain(run: Run) -> object:
+    verdict = asdict(run.verdict)
+    return {
+        "plan": run.plan,
+        "scenario": run.scenario,
+        "seed": run.seed,
+        **verdict,
+        "phases": dict(phases(run)),
+        "one_way": run.verdict.one_way,
+        "round_trip": run.verdict.round_trip,
+        "driven_into": run.verdict.driven_into,
+        "ticks": run.ticks,
+        "competences": {name: asdict(share) for name, share in run.shares.items()},
+        "switches": [asdict(switch) for switch in run.switches],
+        "holes": run.holes,
+        "faults": list(run.faults),
+        "real_time_factor": run.real_time_factor,
+    }

@@ -1,0 +1,99 @@
+"""`rplan tick PLAN`: a plan alone, tick by tick (L22)."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any, TextIO
+
+import click
+
+from rplan.apps import talk
+from rplan.apps.files import InputError, plan_file
+from rplan.apps.wiring import decider
+from rplan.driver import Compiled
+from rplan.runtime.encode import PerceptError, PerceptValue
+from rplan.runtime.trace import Trace
+
+
+@click.command("tick", short_help="Run a plan alone: percepts in, outputs out, one JSON object a line.")
+@click.argument("plan")
+@click.option("--input", "source", type=click.File("r", encoding="utf-8"), default="-", help="Default: standard input.")
+@click.option("--strict", is_flag=True, help="A name that nothing declares is an error.")
+@click.option("--allow-holes", is_flag=True, help="A hole is a warning.")
+def command(plan: str, source: TextIO, strict: bool, allow_holes: bool) -> None:
+    """Read one JSON object a line, percept → value (numbers in SI), and write what PLAN decides, one a line.
+
+    A percept's key is its name, or its canonical text where it has arguments. The first bad line ends it with exit
+    code 2.
+    """
+    compiled = talk.compiled(plan_file(plan), strict=strict, allow_holes=allow_holes)
+    decide = decider(compiled)
+    trace = Trace(compiled.ways)
+    keys = _Keys(compiled)
+    number = 0
+    for line_number, line in enumerate(_lines(source), start=1):
+        if not line.strip():
+            continue
+        values = keys.read(line, line_number)
+        try:
+            decision = decide.tick(values)
+        except PerceptError as error:
+            raise InputError(f"line {line_number}: `{keys.name(error.key)}`: {_said(error)}") from None
+        click.echo(trace.line(number, decision))
+        number += 1
+
+
+def _lines(source: TextIO) -> Any:
+    try:
+        yield from source
+    except UnicodeDecodeError:
+        raise InputError("the input is not text in UTF-8") from None
+
+
+def _said(error: PerceptError) -> str:
+    return str(error).removeprefix(f"{error.key}: ")
+
+
+class _Keys:
+    """Which keys a line may have."""
+
+    def __init__(self, compiled: Compiled) -> None:
+        self._texts: dict[str, str] = {}
+        for function in compiled.goals.functions.values():
+            if function.type is not None and function.type.name in ("bool", "number") and not function.parameters:
+                self._texts[function.name] = f"({function.name})"
+        for term in compiled.goals.percepts():
+            self._texts[term.text if term.arguments else term.name] = term.text
+        self._names = {text: name for name, text in self._texts.items()}
+
+    def name(self, text: str) -> str:
+        """The key of a percept."""
+        return self._names.get(text, text)
+
+    def read(self, line: str, number: int) -> Mapping[str, PerceptValue]:
+        """The percept values of a line by canonical text; `InputError` naming line and key."""
+
+        def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+            seen: dict[str, Any] = {}
+            for key, value in pairs:
+                if key in seen:
+                    raise InputError(f"line {number}: `{key}` is there twice")
+                seen[key] = value
+            return seen
+
+        try:
+            value = json.loads(line, object_pairs_hook=unique)
+        except json.JSONDecodeError as error:
+            raise InputError(f"line {number}: not JSON: {error.msg} at column {error.colno}") from None
+        except RecursionError:
+            raise InputError(f"line {number}: nested too deep") from None
+        if not isinstance(value, dict):
+            raise InputError(f"line {number}: an object percept → value is wanted, not {json.dumps(value)[:40]}")
+        values: dict[str, PerceptValue] = {}
+        for key, given in value.items():
+            text = self._texts.get(key) or (key if key in self._names else None)
+            if text is None:
+                raise InputError(f"line {number}: `{key}` is a percept that the plan neither declares nor reads")
+            values[text] = given
+        return values

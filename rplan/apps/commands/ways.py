@@ -1,0 +1,88 @@
+"""`rplan ways PLAN`: the ways of a plan."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import click
+
+from rplan.apps import talk
+from rplan.apps.files import plan_file
+from rplan.driver import Compiled
+from rplan.runtime.trace import way_json
+from rplan.ways.count import PaperCount, count
+from rplan.ways.coverage import Situations, Witness, atom_value, describe
+from rplan.ways.exhaust import count_situations, exhaustible
+from rplan.ways.way import TakenWay, taken_way
+
+LIMIT = 200
+
+
+@click.command("ways", short_help="List the ways of a plan; --paper counts them as the paper does.")
+@click.argument("plan")
+@click.option("--paper", is_flag=True, help="Count as Bonasso, Antonisse and Slack (1992) count.")
+@click.option("--limit", default=LIMIT, show_default=True, type=click.IntRange(1), help="List no more ways than this.")
+@click.option("--json", "as_json", is_flag=True, help="For programs.")
+def command(plan: str, paper: bool, limit: int, as_json: bool) -> None:
+    """List the ways of PLAN that can be taken, each with its acts, what it gives up, and a situation that takes it.
+
+    With --paper their number in the manner of the find-and-fetch paper: one way for each disjunct of the conditions.
+    """
+    compiled = talk.compiled(plan_file(plan), allow_holes=True, as_json=as_json)
+    if paper:
+        _paper(compiled, count(compiled.goals.top), as_json)
+    else:
+        _list(compiled, limit, as_json)
+
+
+def _paper(compiled: Compiled, counted: PaperCount, as_json: bool) -> None:
+    holes = _holes(compiled)
+    if as_json:
+        talk.result(
+            {"ways": counted.total, "distinct": counted.distinct, "taken": counted.taken}
+            | ({} if holes is None else {"situations": holes[1], "holes": holes[0]})
+        )
+        return
+    click.echo(f"{counted.total} ways ({counted.distinct} distinct, {counted.taken} ever taken)")
+    if holes is not None:
+        click.echo(f"{holes[0] or 'no'} {'hole' if holes[0] in (0, 1) else 'holes'} in {holes[1]:,} situations")
+
+
+def _holes(compiled: Compiled) -> tuple[int, int] | None:
+    if not exhaustible(compiled.ways):
+        return None
+    return count_situations(compiled.ways, compiled.ways.hole), 1 << len(compiled.ways.atoms)
+
+
+def _list(compiled: Compiled, limit: int, as_json: bool) -> None:
+    found = list(_taken(compiled, limit))
+    if as_json:
+        ways = [dict(way_json(way)) | {"when": dict(witness)} for witness, way in found]
+        talk.result({"plan": compiled.goals.name, "ways": ways, "cut_short": len(found) == limit})
+        return
+    for number, (witness, way) in enumerate(found, start=1):
+        click.echo(f"{number:>3}  {_acts(way)}")
+        for given in way.given_up:
+            click.echo(f"     gives up {given.member}: {given.because}")
+        click.echo(f"     by {', '.join(way.rules) or 'the top goal'}")
+        click.echo(f"     when {describe(witness, compiled.ways)}")
+    more = f"; there may be more (--limit {limit})" if len(found) == limit else ""
+    click.echo(f"{len(found)} ways can be taken{more}")
+
+
+def _taken(compiled: Compiled, limit: int) -> Iterator[tuple[Witness, TakenWay]]:
+    """The ways in the order of their places in the text, each with its simplest situation."""
+    situations = Situations(compiled.ways)
+    found = []
+    for witness in situations.taken_ways(limit):
+        atoms = [atom_value(atom, witness) for atom in compiled.ways.atoms]
+        found.append((witness, taken_way(compiled.ways, atoms)))
+    yield from sorted(found, key=lambda pair: _rank(pair[1]))
+
+
+def _rank(way: TakenWay) -> tuple[list[tuple[int, int]], int]:
+    return [(act.span.line, act.span.column) for act in way.acts], len(way.given_up)
+
+
+def _acts(way: TakenWay) -> str:
+    return " ".join(f"{act.output}={act.value}" for act in way.acts) or "(sets nothing)"

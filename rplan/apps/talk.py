@@ -1,0 +1,83 @@
+"""How commands speak: diagnostics to stderr, results to stdout, `--json` for programs.
+
+Takes: diagnostics, plain values. Gives: text, and the exit code where a plan is wrong. Leaves alone: what is said.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any, NoReturn
+
+import click
+
+from rplan.apps.files import unreadable
+from rplan.apps.wiring import compile_file
+from rplan.driver import Compiled
+from rplan.lang.diagnostic import Diagnostic, PlanError, render
+
+PLAN_IS_WRONG = 1
+MOST_NOTES = 8
+
+
+def compiled(path: Path, *, strict: bool = False, allow_holes: bool = False, as_json: bool = False) -> Compiled:
+    """The plan in a file, compiled; says what is to be said and leaves with 1 if it is wrong."""
+    try:
+        plan = compile_file(path, strict=strict, allow_holes=allow_holes)
+    except PlanError as error:
+        wrong(error, path, as_json=as_json)
+    except OSError as error:
+        unreadable(path, error)
+    if not as_json:
+        say(plan.diagnostics, plan.texts)
+    return plan
+
+
+def wrong(error: PlanError, path: Path, *, as_json: bool = False) -> NoReturn:
+    """Say everything that is wrong with a plan and leave with 1."""
+    if as_json:
+        result({"ok": False, "diagnostics": [as_plain(d) for d in error.diagnostics]})
+    else:
+        say(error.diagnostics, {str(path): path.read_bytes().decode("utf-8", errors="replace")})
+    raise SystemExit(PLAN_IS_WRONG)
+
+
+def say(diagnostics: Iterable[Diagnostic], texts: Mapping[str, str]) -> None:
+    """Print diagnostics to stderr, errors first, and count them; many notes are cut short."""
+    every = list(diagnostics)
+    for severity in ("error", "warning", "note"):
+        some = [d for d in every if d.severity == severity]
+        shown = some[:MOST_NOTES] if severity == "note" else some
+        for diagnostic in shown:
+            click.echo(render(diagnostic, texts) + "\n", err=True)
+        if len(shown) < len(some):
+            click.echo(f"… and {len(some) - len(shown)} more notes (all of them with --json)\n", err=True)
+    if every:
+        counts = {s: sum(d.severity == s for d in every) for s in ("error", "warning", "note")}
+        words = [f"{count} {name}{'' if count == 1 else 's'}" for name, count in counts.items() if count]
+        click.echo(", ".join(words), err=True)
+
+
+def as_plain(diagnostic: Diagnostic) -> Mapping[str, object]:
+    """A diagnostic as plain JSON values."""
+    return {
+        "code": diagnostic.code,
+        "severity": diagnostic.severity,
+        "message": diagnostic.message,
+        "place": place(diagnostic.span),
+        "related": [{"message": r.message, "place": place(r.span)} for r in diagnostic.related],
+        "hint": diagnostic.hint,
+        "when": diagnostic.when,
+    }
+
+
+def place(span: Any) -> Mapping[str, object]:
+    """A place as plain JSON values, lines and columns from 1."""
+    names = ("file", "line", "column", "end_line", "end_column")
+    return {name: getattr(span, name) for name in names}
+
+
+def result(value: object) -> None:
+    """Print a result for programs."""
+    click.echo(json.dumps(value, indent=2, ensure_ascii=False))
