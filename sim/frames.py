@@ -31,8 +31,10 @@ def bearing(p_WB: Pose, point: Vec2) -> float:
 
 
 def approach(value: float, target: float, step: float) -> float:
-    """`value` moved towards `target` by at most `step` >= 0."""
-    return min(target, value + step) if target > value else max(target, value - step)
+    """`value` moved towards `target` by at most `step` >= 0; it arrives in spite of rounding."""
+    if abs(target - value) <= step + 1e-12:
+        return target
+    return value + step if target > value else value - step
 
 
 def distance_to_segment(point: Vec2, a: Vec2, b: Vec2) -> float:

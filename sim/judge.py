@@ -79,7 +79,7 @@ class Judge:
 
     def __init__(self, world: World) -> None:
         self._world = world
-        self._place = world.robot.pose
+        self._place, self._time = world.robot.pose, world.time
         self._departure = 0.0
         self._arrival: float | None = None
         self._loaded: float | None = None
@@ -108,7 +108,7 @@ class Judge:
     def observe(self) -> None:
         """Take the world as it is now."""
         world = self._world
-        pose = world.robot.pose
+        pose, self._time = world.robot.pose, world.time
         self._distance += ((pose.x - self._place.x) ** 2 + (pose.y - self._place.y) ** 2) ** 0.5
         self._place = pose
         self._clearance = min(self._clearance, world.clearance())
@@ -138,7 +138,7 @@ class Judge:
 
     def verdict(self, stopped: str = "") -> Verdict:
         """What is to be said now. stopped: why the run ended, if not because it was done or out of time."""
-        time = self._world.time
+        time = self._time
         why = stopped or f"out of time at {time:.0f} s"
         return Verdict(
             done=self.done,

@@ -4,10 +4,11 @@ Takes: rays, and a `Scene` of circles and convex polygons at their present poses
 to the first thing and which thing that is, or every crossing with its way in and its way out.
 Leaves alone: noise, and the robot itself (it is not in the scene).
 
-Method. First a cull by angular extent, without any angle: a ray can meet a shape only if the shape's enclosing
-circle lies across its line. Only the pairs that are left are computed exactly: circles by the chord, polygons by
-the half-planes of their edges (the last way in must come before the first way out), so that no ray slips through
-a corner. A ray that starts inside a shape meets it at distance 0, as pymunk has it.
+Method. First a cull by angular extent: seen from the middle of all ray starts, a thing (widened by how far the starts
+lie from there) fills an interval of angles, and only the rays in it can meet the thing. The pairs that are left are
+computed exactly: circles by the chord, polygons by the half-planes of their edges (the last way in must come before the
+first way out), so that no ray slips through a corner. A ray that starts inside a shape meets it at distance 0, as
+pymunk has it.
 """
 
 from __future__ import annotations
@@ -74,7 +75,7 @@ def ray(start: Vec2, angle: float, height: float = 0.0) -> Rays:
 
 @dataclass(frozen=True, slots=True)
 class Crossings:
-    """Pairs of a ray and a thing on it, by ray and then by thing: distances [m] of the way in and the way out."""
+    """Pairs of a ray and a thing on it, in the order of the things: distances [m] of the way in and the way out."""
 
     ray: Ints
     thing: Ints
@@ -119,18 +120,39 @@ class Scene:
 
 
 def crossings(rays: Rays, max_range: float, scene: Scene) -> Crossings:
-    """Every thing, at least as high as the ray, that a ray meets within `max_range` [m]."""
-    dx, dy = np.cos(rays.angle)[:, None], np.sin(rays.angle)[:, None]
-    to_x, to_y = scene.x - rays.x[:, None], scene.y - rays.y[:, None]
+    """Every thing, higher than the ray runs, that a ray meets within `max_range` [m]."""
+    which, thing = _candidates(rays, max_range, scene)
+    dx, dy = np.cos(rays.angle)[which], np.sin(rays.angle)[which]
+    to_x, to_y = scene.x[thing] - rays.x[which], scene.y[thing] - rays.y[which]
     along, across = dx * to_x + dy * to_y, dx * to_y - dy * to_x
-    near = (np.abs(across) <= scene.wide) & (np.abs(along - max_range / 2) <= scene.wide + max_range / 2)
-    near &= rays.height[:, None] < scene.height
-    which, thing = np.nonzero(near)
-    enter, leave = _chords(along[which, thing], across[which, thing], scene.radius[thing])
+    near = (np.abs(across) <= scene.wide[thing]) & (rays.height[which] < scene.height[thing])
+    which, thing, dx, dy = which[near], thing[near], dx[near], dy[near]
+    enter, leave = _chords(along[near], across[near], scene.radius[thing])
     flat = np.nonzero(~scene.round[thing])[0]
-    enter[flat], leave[flat] = _through_edges(rays, dx[:, 0], dy[:, 0], scene, which[flat], thing[flat])
+    enter[flat], leave[flat] = _through_edges(rays, which[flat], dx[flat], dy[flat], scene, thing[flat])
     met = (enter <= leave) & (leave > 0) & (enter <= max_range)
     return Crossings(which[met], thing[met], np.maximum(enter[met], 0.0), leave[met])
+
+
+def _candidates(rays: Rays, max_range: float, scene: Scene) -> tuple[Ints, Ints]:
+    """Pairs of a ray and a thing that its angle does not rule out, thing by thing."""
+    count = rays.x.size
+    x, y = rays.x.sum() / count, rays.y.sum() / count
+    spread = float(np.sqrt(((rays.x - x) ** 2 + (rays.y - y) ** 2).max()))
+    to_x, to_y = scene.x - x, scene.y - y
+    distance, size = np.hypot(to_x, to_y), scene.wide + (spread + MARGIN)
+    things = np.nonzero(distance <= max_range + size)[0]
+    half = np.arcsin(np.minimum(size[things] / np.maximum(distance[things], MARGIN), 1.0))
+    half = np.where(distance[things] <= size[things], math.pi, half) + MARGIN
+    low = np.mod(np.arctan2(to_y[things], to_x[things]) - half, math.tau)
+    turned = np.mod(rays.angle, math.tau)
+    order = np.argsort(turned, kind="stable")
+    angles = np.concatenate([turned[order], turned[order] + math.tau, turned[order] + 2 * math.tau])
+    first = np.searchsorted(angles, low)
+    number = np.minimum(np.searchsorted(angles, low + 2 * half, side="right") - first, count)
+    skipped = np.cumsum(number) - number
+    place = np.arange(int(number.sum())) + np.repeat(first - skipped, number)
+    return order[place % count], np.repeat(things, number)
 
 
 def _chords(along: Floats, across: Floats, radius: Floats) -> tuple[Floats, Floats]:
@@ -138,9 +160,9 @@ def _chords(along: Floats, across: Floats, radius: Floats) -> tuple[Floats, Floa
     return along - half, along + half
 
 
-def _through_edges(rays: Rays, dx: Floats, dy: Floats, scene: Scene, which: Ints, thing: Ints) -> tuple[Floats, Floats]:
+def _through_edges(rays: Rays, which: Ints, dx: Floats, dy: Floats, scene: Scene, thing: Ints) -> tuple[Floats, Floats]:
     nx, ny = scene.normal_x[thing], scene.normal_y[thing]
-    closing = nx * dx[which, None] + ny * dy[which, None]
+    closing = nx * dx[:, None] + ny * dy[:, None]
     gap = scene.offset[thing] - nx * rays.x[which, None] - ny * rays.y[which, None]
     parallel = closing == 0
     at = gap / np.where(parallel, 1.0, closing)

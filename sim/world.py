@@ -84,11 +84,12 @@ class World:
         self._stereo = Stereo(spec.stereo, sources.stereo)
         self._odometry = DeadReckoning(spec.odometry, layout.start, sources.odometry)
         self._base_still_for = 0.0
-        self._touching: dict[Thing, Touch] = {}
+        self._touching: dict[int, Touch] = {}
+        self._last_touch: dict[int, Touch] = {}
         self.touches: tuple[Touch, ...] = ()
         self.begun: tuple[Touch, ...] = ()
         self._reading: Reading | None = None
-        self._space.on_collision(ROBOT, OTHER, begin=self._begin, separate=self._separate)
+        self._space.on_collision(ROBOT, OTHER, begin=self._begin, pre_solve=self._touch)
 
     # --- the loop ---------------------------------------------------------------------------------
 
@@ -109,7 +110,7 @@ class World:
             raise ValueError(f"a command must be finite, got {command}")
         self._obey(command)
         self._prepare()
-        self.begun = ()
+        self.begun, self._touching = (), {}
         for _ in range(SUBSTEPS):
             self._space.step(TICK / SUBSTEPS)
         self.tick += 1
@@ -185,16 +186,17 @@ class World:
     # --- contacts ---------------------------------------------------------------------------------
 
     def _begin(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: object) -> None:
-        _, other = arbiter.shapes
-        thing, normal = self._by_shape[other], arbiter.normal
+        thing, normal = self._by_shape[arbiter.shapes[1]], arbiter.normal
         towards = self.robot.body.velocity.dot(normal)
         against = -thing.body.velocity.dot(normal)
         touch = Touch(thing.placed.id, self.time, towards > max(TOUCH_SPEED, against))
-        self._touching[thing] = touch
+        self._last_touch[thing.index] = touch
         self.begun += (touch,)
 
-    def _separate(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: object) -> None:
-        self._touching.pop(self._by_shape[arbiter.shapes[1]], None)
+    def _touch(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: object) -> None:
+        """Each sub-step while hulls touch; `separate` would be called from the deallocation of the space as well."""
+        index = self._by_shape[arbiter.shapes[1]].index
+        self._touching[index] = self._last_touch[index]
 
 
 def _space() -> pymunk.Space:

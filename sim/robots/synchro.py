@@ -69,6 +69,6 @@ class SynchroDrive:
     def _drive(self, body: pymunk.Body, _gravity: tuple[float, float], _damping: float, dt: float) -> None:
         self._speed = approach(self._speed, self._wanted.speed, self.build.acceleration * dt)
         self._turn_rate = approach(self._turn_rate, self._wanted.turn_rate, self.build.turn_acceleration * dt)
-        angle = body.angle
+        angle = body.angle + self._turn_rate * dt / 2  # the middle of the arc that the next sub-step will drive
         body.velocity = self._speed * math.cos(angle), self._speed * math.sin(angle)
         body.angular_velocity = self._turn_rate

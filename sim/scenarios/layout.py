@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import count
 
 from numpy.random import Generator
 
@@ -45,7 +46,16 @@ def lay_out(scenario: Scenario, chance: Generator) -> Layout:
             things.append(_placed(spec, spec.at, heading, things))
     for scatter in scenario.scatter:
         things += _scattered(scatter, scenario, things, chance)
+    _check_start(scenario, things)
     return Layout(start, tuple(things))
+
+
+def _check_start(scenario: Scenario, things: list[Placed]) -> None:
+    for thing in things:
+        if distance(scenario.robot.start, thing.outline, thing.pose) < scenario.robot.build.radius:
+            raise ScenarioError(
+                [Problem(scenario.name, 1, 1, "robot.start", f"the robot stands in {thing.id!r} there")]
+            )
 
 
 def _drawn(amount: Amount, chance: Generator) -> float:
@@ -62,23 +72,24 @@ def _donor(scenario: Scenario) -> Placed:
 
 
 def _placed(spec: ThingSpec, at: Vec2, heading: float, before: list[Placed]) -> Placed:
-    number = 1 + sum(thing.kind == spec.kind for thing in before)
-    name = spec.id or f"{spec.kind}-{number}"
+    taken = [thing.id for thing in before]
+    free = (name for number in count(1) if (name := f"{spec.kind}-{number}") not in taken)
+    name = spec.id or next(free)
     return Placed(name, spec.kind, spec.outline, Pose(*at, wrap(heading)), spec.height, spec.mass, spec.motion)
 
 
 def _scattered(scatter: Scatter, scenario: Scenario, before: list[Placed], chance: Generator) -> list[Placed]:
     strips = [*_strips(scatter.keep_clear, scenario), *_lanes(before)]
     robot = Placed("robot", "robot", Circle(scenario.robot.build.radius), Pose(*scenario.robot.start), 1.0)
+    wanted = int(chance.integers(scatter.count[0], scatter.count[1] + 1))
     for _ in range(ATTEMPTS):
-        count = int(chance.integers(scatter.count[0], scatter.count[1] + 1))
         new: list[Placed] = []
-        while len(new) < count and (one := _one(scatter, strips, [robot, *before, *new], chance)):
+        while len(new) < wanted and (one := _one(scatter, strips, [robot, *before, *new], chance)):
             new.append(one)
-        if len(new) == count:
+        if len(new) == wanted:
             return new
     message = (
-        f"no room for {count} scattered things in {list(scatter.region)}: make the region wider or min_gap smaller"
+        f"no room for {wanted} scattered things in {list(scatter.region)}: make the region wider or min_gap smaller"
     )
     raise ScenarioError([Problem(scenario.name, 1, 1, "scatter", message)])
 

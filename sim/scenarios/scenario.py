@@ -11,14 +11,18 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeVar
 
+import yaml
+
 from behaviours.interface import Vec2
 from sim.raycast import Circle, Outline, box
 from sim.robots.synchro import Build
 from sim.scenarios.schema import (
     Key,
     Problem,
+    Report,
     ScenarioError,
     Spec,
+    Wrong,
     by_kind,
     choice,
     either,
@@ -374,13 +378,25 @@ scatter = record(
     keep_clear=Key(listed(strip), ()),
 )
 
+
+def _things(report: Report, node: yaml.Node, path: str) -> tuple[ThingSpec, ...] | Wrong:
+    """Things whose ids differ."""
+    things: tuple[ThingSpec, ...] | Wrong = listed(by_kind(THINGS))(report, node, path)
+    taken = ["robot", "donor"]
+    for index, thing in enumerate(() if isinstance(things, str) else things):
+        if thing.id in taken:
+            report.wrong(node.value[index], f"{path}[{index}].id", f"the name {thing.id!r} is taken")
+        taken += [thing.id] if thing.id else []
+    return things
+
+
 SCENARIO = record(
     Scenario,
     name=Key(word),
     bounds=Key(region),
     robot=Key(robot),
     donor=Key(donor),
-    things=Key(listed(by_kind(THINGS)), ()),
+    things=Key(_things, ()),
     scatter=Key(listed(scatter), ()),
     weather=Key(_like(Weather(), sun=angle, jitter=angle, gust=angle, gusts=share), Weather()),
     time_limit=Key(duration, 1800.0),

@@ -5,8 +5,8 @@ and the base has stood still for the time of a fixation, and again after each su
 Leaves alone: what the patch looks like; verging fails only where there is nothing within `FARTHEST`.
 
 The ray starts above the robot's origin at camera height h with tilt t downwards. It meets the level ground at
-h / tan t, the side of a thing where it is lower than the thing is high, or the top of a thing, whichever comes first; the
-reading is the slant distance z. Noise: sd 0.003 z + 0.001 z^2, vergence being worse than proportional with range.
+h / tan t, the side of a thing where it is lower than the thing is high, or the top of a thing, whichever comes first;
+the reading is the slant distance z. Noise: sd 0.003 z + 0.001 z^2, vergence being worse than proportional with range.
 A fixation takes 9 s, so that a search of 32 fixations with its head movements lasts about five minutes.
 """
 
