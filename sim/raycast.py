@@ -95,7 +95,7 @@ class Scene:
         self.round = np.array([isinstance(o, Circle) for o in outlines], dtype=bool)
         self.radius = np.array([reach(o) for o in outlines], dtype=float)
         self.wide = self.radius + np.where(self.round, 0.0, MARGIN)
-        self.normal_x, self.normal_y, self.offset = (np.zeros((count, edges)) for _ in range(3))
+        self.normal_x, self.normal_y, self.offset = (np.zeros((edges, count)) for _ in range(3))
         for index, pose in enumerate(poses):
             self.place(index, pose)
 
@@ -107,16 +107,16 @@ class Scene:
             self._place_edges(index, outline, pose)
 
     def _place_edges(self, index: int, outline: Polygon, pose: Pose) -> None:
-        """Edges as half-planes normal . p <= offset; the last edge fills the row up."""
+        """Edges as half-planes normal . p <= offset; the last edge fills the column up."""
         c, s = math.cos(pose.theta), math.sin(pose.theta)
         corners = [(pose.x + c * x - s * y, pose.y + s * x + c * y) for x, y in outline.vertices]
         last = len(corners) - 1
-        for edge in range(self.offset.shape[1]):
+        for edge in range(len(self.offset)):
             (ax, ay), (bx, by) = corners[min(edge, last)], corners[(min(edge, last) + 1) % len(corners)]
             length = math.hypot(bx - ax, by - ay)
             nx, ny = (by - ay) / length, (ax - bx) / length
-            self.normal_x[index, edge], self.normal_y[index, edge] = nx, ny
-            self.offset[index, edge] = nx * ax + ny * ay
+            self.normal_x[edge, index], self.normal_y[edge, index] = nx, ny
+            self.offset[edge, index] = nx * ax + ny * ay
 
 
 def crossings(rays: Rays, max_range: float, scene: Scene) -> Crossings:
@@ -161,14 +161,14 @@ def _chords(along: Floats, across: Floats, radius: Floats) -> tuple[Floats, Floa
 
 
 def _through_edges(rays: Rays, which: Ints, dx: Floats, dy: Floats, scene: Scene, thing: Ints) -> tuple[Floats, Floats]:
-    nx, ny = scene.normal_x[thing], scene.normal_y[thing]
-    closing = nx * dx[:, None] + ny * dy[:, None]
-    gap = scene.offset[thing] - nx * rays.x[which, None] - ny * rays.y[which, None]
+    nx, ny = scene.normal_x.take(thing, axis=1), scene.normal_y.take(thing, axis=1)
+    closing = nx * dx + ny * dy
+    gap = scene.offset.take(thing, axis=1) - nx * rays.x[which] - ny * rays.y[which]
     parallel = closing == 0
     at = gap / np.where(parallel, 1.0, closing)
-    enter = np.where(closing < 0, at, -np.inf).max(axis=1, initial=-np.inf)
-    leave = np.where(closing > 0, at, np.inf).min(axis=1, initial=np.inf)
-    return enter, np.where((parallel & (gap < 0)).any(axis=1), -np.inf, leave)
+    enter = np.where(closing < 0, at, -np.inf).max(axis=0)
+    leave = np.where(closing > 0, at, np.inf).min(axis=0)
+    return enter, np.where((parallel & (gap < 0)).any(axis=0), -np.inf, leave)
 
 
 def cast(rays: Rays, max_range: float, scene: Scene) -> tuple[Floats, Ints]:
