@@ -169,6 +169,8 @@ _NAT = _parameters(
     ),
     ("group_hysteresis", "m", "A group is parted only by a gap so much wider (chosen here)."),
     ("spin_hysteresis", "", "A spin is kept unless the other side deviates by less than this share (chosen here)."),
+    ("squeeze", "rad", "Where two groups overlap by less, the way is the middle between them (chosen here)."),
+    ("narrow_margin", "m", "Replaces group-margin while a group closes a ring around the robot (chosen here)."),
     ("look_ahead", "m", "Groups beyond do not bound the heading (chosen here)."),
     ("max_speed", "m/s", "Greatest speed (printed in the paper)."),
     ("stop_distance", "m", "Least speed at this range of the nearest echo (chosen here)."),

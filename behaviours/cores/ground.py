@@ -48,10 +48,11 @@ def ground_points(height: float, settings: GroundSettings) -> tuple[float, ...]:
 
 
 def pans(settings: GroundSettings) -> tuple[float, ...]:
-    """Pan angles [rad] about the bearing, right to left, that cover its error."""
+    """Pan angles [rad] about the bearing that cover its error, the likely ones in the middle first."""
     if settings.pans == 1:
         return (0.0,)
-    return tuple(settings.pan_span * (2 * i / (settings.pans - 1) - 1) for i in range(settings.pans))
+    across = [settings.pan_span * (2 * i / (settings.pans - 1) - 1) for i in range(settings.pans)]
+    return tuple(sorted(across, key=abs))
 
 
 def tilt(height: float, ground: float) -> float:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from behaviours.cores.circles import Circle
@@ -32,7 +32,9 @@ class NatSettings:
     group_margin: float = 0.22
     group_hysteresis: float = 0.3
     spin_hysteresis: float = 0.5
+    squeeze: float = 0.3
     look_ahead: float = 3.0
+    narrow_margin: float = 0.15
     max_speed: float = 0.2
     stop_distance: float = 0.2
     slow_distance: float = 1.5
@@ -92,15 +94,37 @@ def make_plan(
     settings: NatSettings,
 ) -> NatPlan:
     """The plan from the robot to the goal. before, memory: grouping and spins of the plan before (empty at first); now [s]."""
-    joined = link(circles, before, settings)
-    found = components(len(circles), joined)
+    found, spans = _groups(circles, robot, goal, before, settings)
     grouping = {circles[i].ident: at for at, members in enumerate(found) for i in members}
-    spans = [_spans(members, circles, joined, robot, goal, settings) for members in found]
     groups = [_assess(span, memory, now, settings) for span in spans if span]
     groups.sort(key=lambda g: g.distance)
     heeded, interval = _bound(groups, settings)
     heading = wrap(bearing(robot, goal) + max(interval[0], min(0.0, interval[1])))
     return NatPlan(goal, tuple(circles), grouping, heeded, interval, heading)
+
+
+def _groups(
+    circles: Sequence[Circle], robot: Pose, goal: Pose, before: Mapping[int, int], settings: NatSettings
+) -> tuple[list[list[int]], list[list[Span]]]:
+    """The circles of each group, and what they take from the headings.
+
+    A group that closes a ring around the robot has no way out by definition, but the robot came in somewhere: then only
+    narrower gaps join circles.
+    """
+    narrow = replace(settings, group_margin=settings.narrow_margin, group_hysteresis=0.0)
+    found: list[list[int]] = []
+    spans: list[list[Span]] = []
+    for attempt in (settings, replace(settings, group_hysteresis=0.0), narrow):
+        joined = link(circles, before, attempt)
+        found = components(len(circles), joined)
+        spans = [_spans(members, circles, joined, robot, goal, attempt) for members in found]
+        if not any(map(_encloses, spans)):
+            break
+    return found, spans
+
+
+def _encloses(spans: Sequence[Span]) -> bool:
+    return bool(spans) and max(s[1] for s in spans) - min(s[2] for s in spans) >= math.tau
 
 
 # --- grouping -------------------------------------------------------------------------------------
@@ -220,17 +244,21 @@ def _choose(inherited: Sequence[Spin], left: float, right: float, settings: NatS
 
 
 def _bound(groups: Sequence[Group], settings: NatSettings) -> tuple[tuple[Group, ...], tuple[float, float]]:
-    """The groups with `heeded` filled in, and the headings that they leave, the nearest group first."""
+    """The groups with `heeded` filled in, and the headings that they leave, the nearest group first.
+
+    Where two groups overlap by less than `squeeze`, the way is the middle between them.
+    """
     lo, hi = -math.tau, math.tau
     judged = []
     for g in groups:
-        near = g.distance < settings.look_ahead
-        heeded = near and (g.left <= hi if g.spin == "cw" else g.right >= lo)
-        if heeded and g.spin == "cw":
-            lo = max(lo, g.left)
-        elif heeded:
-            hi = min(hi, g.right)
-        judged.append(Group(g.idents, g.spin, g.left, g.right, g.distance, g.locked_until, heeded))
+        bound = (g.left, hi) if g.spin == "cw" else (lo, g.right)
+        overlap = max(lo, bound[0]) - min(hi, bound[1])
+        heeded = g.distance < settings.look_ahead and overlap <= settings.squeeze
+        if heeded:
+            lo, hi = max(lo, bound[0]), min(hi, bound[1])
+            if overlap > 0.0:
+                lo = hi = (lo + hi) / 2
+        judged.append(replace(g, heeded=heeded))
     return tuple(judged), (lo, hi)
 
 

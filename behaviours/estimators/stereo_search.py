@@ -101,14 +101,14 @@ class StereoSearch:
         return {"fixation": self._index, "of": len(self._fixations), "unsticks": self._unsticks}
 
     def _plan(self, reading: Reading) -> tuple[Head, ...]:
-        """Every fixation near to far, the head panning to and fro."""
+        """Every fixation, near to far."""
         bearing = self._bearing()
         ahead = 0.0 if bearing is None else wrap(bearing - reading.odometry.pose.theta)
         offsets = pans(self.settings.ground)
         return tuple(
             Head(ahead + offset, tilt(self._height, at))
-            for row, at in enumerate(ground_points(self._height, self.settings.ground))
-            for offset in (offsets if row % 2 == 0 else offsets[::-1])
+            for at in ground_points(self._height, self.settings.ground)
+            for offset in offsets
         )
 
     def _restart(self, stamp: float) -> None:
