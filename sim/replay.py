@@ -62,9 +62,13 @@ class Run:
     values: dict[str, int] = field(default_factory=dict)
     at: list[int] = field(default_factory=list)
     of: list[int] = field(default_factory=list)
+    last: object = None
 
     def add(self, tick: int, value: object) -> None:
         """The value holds from this tick on."""
+        if self.of and value == self.last:
+            return
+        self.last = value
         index = self.values.setdefault(json_text(_rounded(value)), len(self.values))
         if not self.of or self.of[-1] != index:
             self.at.append(tick)

@@ -75,7 +75,7 @@ def test_the_picture_speaks_of_what_happened(run: Recording) -> None:
     words = texts(run)
     assert {"find $x$ · lot · seed 3", "on board at 0:30.0, end at 0:59.9"} <= words
     assert {"donor", "start, home", "on board 0:30.0", "runaway 0:20.0", "contact 0:20.4"} <= words
-    assert {"to the donor", "return", "go  90%", "flee-from-danger  2%", "left open  8%", "hole  1×"} <= words
+    assert {"to the donor", "return", "go  54.0 s", "flee-from-danger  1.0 s", "left open  5.0 s", "hole  1×"} <= words
 
 
 def test_a_verdict_takes_the_place_of_the_moments(run: Recording) -> None:
@@ -99,17 +99,15 @@ def test_the_same_run_gives_the_same_picture(run: Recording, tmp_path: Path) -> 
 def test_a_hand_written_brain_in_a_bare_world_is_drawn_too(tmp_path: Path) -> None:
     ticks = [{"t": n / 10, "world": {"robot": [n / 50, 0.0, 0.0]}, "plan": None} for n in range(20)]
     plot.draw(Recording({"format": 1}, ticks), tmp_path / "run.png")
-    assert colour_share(tmp_path / "run.png", plot.PALETTE[0]) > 0.005
+    assert colour_share(tmp_path / "run.png", plot.DRIVEN) > 0.005
 
 
-def test_the_colours_go_by_how_long_a_competence_drove() -> None:
-    bands = plot._bands(["(a)", "(b)", "(b)", None, "(run-away)"])
-    assert plot._colours(bands) == {
-        "(b)": plot.PALETTE[0],
-        "(a)": plot.PALETTE[1],
-        None: plot.OPEN,
-        "(run-away)": plot.DANGER,
-    }
+def test_the_colours_go_by_where_the_plan_names_a_competence() -> None:
+    lasted = plot._lasted(plot._bands(["(a)", "(b)", "(b)", None, "(run-away)", "(a)", "(a)"]))
+    assert list(lasted.items()) == [("(a)", 3), ("(b)", 2), (None, 1), ("(run-away)", 1)]
+    first, second, *_ = plot.PALETTE
+    expected = {"(b)": first, "(a)": second, None: plot.OPEN, "(run-away)": plot.DANGER}
+    assert plot._colours(lasted, "(do action (b)) (do action (a))") == expected
 
 
 def test_odometry_is_laid_on_the_first_true_pose() -> None:

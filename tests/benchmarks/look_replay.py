@@ -94,6 +94,32 @@ CIRCLES = {
 CARS = {"car A": (-3.5, 4.5, 1.57), "car B": (-0.8, 4.6, 1.57), "car C": (2.0, -4.6, 1.6), "car D": (4.8, -4.7, 1.5)}
 
 
+TRY = """<script>
+"use strict";
+(async () => {
+  const root = document.documentElement, said = [], clock = () => document.getElementById("clock").textContent.trim();
+  const press = (key, more) => dispatchEvent(new KeyboardEvent("keydown", {key, ...more}));
+  const wait = ms => new Promise(done => setTimeout(done, ms));
+  addEventListener("error", e => { root.dataset.fault = e.message; });
+  while (!root.dataset.ready) await wait(10);
+  for (const key of ["Home", "ArrowRight", "Shift", "n", "p", "End", "Home"]) {
+    key === "Shift" ? press("ArrowRight", {shiftKey: true}) : press(key);
+    said.push(clock());
+  }
+  const line = document.getElementById("timeline"), box = line.getBoundingClientRect();
+  line.setPointerCapture = () => {};
+  const middle = {pointerId: 1, clientX: box.left + box.width / 2, clientY: box.top + 30};
+  line.dispatchEvent(new PointerEvent("pointerdown", middle));
+  said.push(clock());
+  for (let k = 0; k < STEPS; k++) press("ArrowRight");
+  press("Home"); press("+"); press("+"); press("+"); press(" "); await wait(1000); press(" "); said.push(clock());
+  root.dataset.tried = said.join(" | ");
+})();
+</script></body>"""
+"""Steps, jumps, scrubs and plays, and leaves what the clock said on the page's root element."""
+BLANK = "<!doctype html><title>blank</title>"
+
+
 def _line(text: str) -> int:
     return next(k for k, line in enumerate(PLAN.splitlines(), 1) if text in line)
 
@@ -340,7 +366,7 @@ def record(path: Path, ticks: int = 7200) -> None:
 
 
 def browse(url: str, *options: str) -> str:
-    """Run Chromium once; what it writes to stdout."""
+    """Run Chromium once, in virtual time; what it writes to stdout."""
     with tempfile.TemporaryDirectory() as profile:
         quiet = (
             "--no-first-run --disable-background-networking --disable-component-update --disable-sync --disable-quic"
@@ -376,10 +402,28 @@ def main() -> int:
         frame = out / f"{name}.html"  # a window is never so narrow: a frame in it is
         frame.write_text(f'<body style="margin:0">{inside}', encoding="utf-8")
         browse(frame.resolve().as_uri(), f"--window-size=500,{height}", f"--screenshot={out / name}.png")
-    dom = browse(url + "#t=205", "--dump-dom")
-    ready = dom.split('data-ready="', 1)[-1].split('"', 1)[0] if 'data-ready="' in dom else ""
-    print(f"ready after {ready} ms" if ready else "the page did not get ready")
-    return 0 if ready and 'data-fault="' not in dom else 1
+    return try_out(page)
+
+
+def try_out(page: Path) -> int:
+    """Work the page's keys and its timeline; 1 where it reports a fault. Costs are differences of wall time."""
+    walls, dom = [], ""
+    pages = [BLANK, page.read_text(encoding="utf-8")]
+    pages += [pages[1].replace("</body>", TRY.replace("STEPS", steps)) for steps in ("0", "1000")]
+    for number, text in enumerate(pages):
+        tried = page.with_name(f"tried-{number}.html")
+        tried.write_text(text, encoding="utf-8")
+        begin = time.perf_counter()
+        dom = browse(tried.resolve().as_uri(), "--window-size=1280,800", "--dump-dom")
+        walls.append(time.perf_counter() - begin)
+    print(f"opens in {walls[1] - walls[0]:.2f} s, shows a tick in {walls[3] - walls[2]:.2f} ms")
+    fault, clock = _attribute(dom, "fault"), _attribute(dom, "tried")
+    print(f"clock: {clock}" if clock and not fault else f"fault: {fault or 'the page did not get ready'}")
+    return 0 if clock and not fault else 1
+
+
+def _attribute(dom: str, key: str) -> str:
+    return dom.split(f'data-{key}="', 1)[1].split('"', 1)[0] if f'data-{key}="' in dom else ""
 
 
 if __name__ == "__main__":

@@ -24,10 +24,12 @@ if TYPE_CHECKING:
     from matplotlib.patches import Patch
     from matplotlib.ticker import Locator
 
-PALETTE = ("#3478e5", "#16876f", "#8457d8", "#a9720a", "#0f7fa3", "#5c7f1c", "#8d5a3b", "#b0478f")
-DANGER, OPEN, INK, DIM = "#e5484d", "#b4bcc8", "#19202b", "#566172"
+PALETTE = ("#8457d8", "#b0478f", "#8d5a3b", "#16876f", "#3478e5", "#a9720a", "#0f7fa3", "#5c7f1c")
+DANGER, OPEN, DRIVEN, INK, DIM = "#e5484d", "#b4bcc8", "#3478e5", "#19202b", "#566172"
 THING, THING_EDGE, MOVER, DONOR = "#aab4c2", "#6b7788", "#c98a1b", "#0b7a4b"
 FLEEING = re.compile(r"danger|runaway|run-away|escape")
+MARGIN = 3.5
+"""So much of the lot [m] is shown around the way and the donor."""
 WIDTH = 9.0
 """Of the picture [in]."""
 FOOTPRINT_S = 5.0
@@ -127,16 +129,21 @@ def _bands(acts: Sequence[str | None]) -> list[_Band]:
     return bands
 
 
-def _colours(bands: Sequence[_Band]) -> dict[str | None, str]:
-    """Competence -> colour, the longest first; the same as the replay page gives."""
+def _lasted(bands: Sequence[_Band]) -> dict[str | None, int]:
+    """Competence -> ticks, the longest first."""
     lasts: dict[str | None, int] = {}
     for band in bands:
         lasts[band.act] = lasts.get(band.act, 0) + band.end - band.start
-    order = sorted(lasts, key=lambda act: -lasts[act])
-    plain = [act for act in order if act is not None and not FLEEING.search(act)]
+    return dict(sorted(lasts.items(), key=lambda item: -item[1]))
+
+
+def _colours(lasted: Mapping[str | None, int], text: str) -> dict[str | None, str]:
+    """Competence -> colour, by where the plan's text names it, so that its runs share their colours."""
+    plain = [act for act in lasted if act is not None and not FLEEING.search(act)]
+    plain.sort(key=lambda act: text.find(act) if act in text else len(text))
     given = {act: PALETTE[k % len(PALETTE)] for k, act in enumerate(plain)}
-    left_open = OPEN if any(order) else PALETTE[0]
-    return {act: left_open if act is None else given.get(act, DANGER) for act in order}
+    left_open = OPEN if any(lasted) else DRIVEN
+    return {act: left_open if act is None else given.get(act, DANGER) for act in lasted}
 
 
 def _rises(flags: Sequence[bool]) -> list[int]:
@@ -146,6 +153,11 @@ def _rises(flags: Sequence[bool]) -> list[int]:
 
 def _hand_overs(track: _Track) -> list[int]:
     return [k + 1 for k, (before, now) in enumerate(pairwise(track.on_board)) if now and not before]
+
+
+def _period(track: _Track) -> float:
+    """The mean distance of two ticks [s]."""
+    return (track.t[-1] - track.t[0]) / max(1, len(track.t) - 1)
 
 
 def _name(act: str | None) -> str:
@@ -177,8 +189,7 @@ def _outline(shape: Json, pose: Pose, face: str, edge: str, alpha: float = 1.0) 
 
 
 def _draw_things(axes: Axes, world: Json, track: _Track) -> None:
-    donor = world.get("donor")
-    donor_id = _mapping(donor).get("id", donor)
+    donor_id = _donor_id(world)
     for thing in map(_mapping, _listed(world.get("things"))):
         if pose := _pose(thing.get("pose")):
             _draw_thing(axes, thing, pose, thing.get("id") == donor_id, THING, 1.0)
@@ -240,27 +251,36 @@ def _draw_moments(axes: Axes, world: Json, track: _Track, bands: Sequence[_Band]
     axes.plot(*home[:2], marker="s", ms=9, mfc="white", mec=INK, mew=1.6, zorder=6)
     _label(axes, "start, home", home[:2], INK)
     flights = [b.start for b in bands if b.act is not None and FLEEING.search(b.act)]
-    _mark(axes, track, _hand_overs(track), "on board", "P", DONOR, (0, 15))
+    _mark(axes, track, _hand_overs(track), "on board", "P", DONOR, (0, 40))
     _mark(axes, track, flights, "runaway", "X", DANGER, (0, 14))
     _mark(axes, track, _rises(track.contact), "contact", "v", INK, (38, -13))
 
 
 def _mark(axes: Axes, track: _Track, at: list[int], word: str, marker: str, colour: str, offset: Point) -> None:
-    for k in at:
+    for n, k in enumerate(at):
         place = track.pose[k][:2]
         axes.plot(*place, marker=marker, ms=9, mfc=colour, mec="white", zorder=8, ls="")
         if len(at) <= FEW:
-            _label(axes, f"{word} {_clock(track.t[k])}", place, colour, offset)
+            above = math.copysign(12.0 * (n % 3), offset[1])  # neighbours do not cover each other
+            _label(axes, f"{word} {_clock(track.t[k])}", place, colour, (offset[0], offset[1] + above))
 
 
 def _bounds(world: Json, track: _Track) -> tuple[float, float, float, float]:
     """xmin, ymin, xmax, ymax [m] of the picture."""
     match [_number(value) for value in _listed(world.get("bounds"))]:
         case [xmin, ymin, xmax, ymax]:
-            return xmin - 0.3, ymin - 0.3, xmax + 0.3, ymax + 0.3
+            lot = xmin - 0.3, ymin - 0.3, xmax + 0.3, ymax + 0.3
         case _:
-            xs, ys = [p[0] for p in track.pose], [p[1] for p in track.pose]
-            return min(xs) - 2, min(ys) - 2, max(xs) + 2, max(ys) + 2
+            lot = -math.inf, -math.inf, math.inf, math.inf
+    places = [pose[:2] for pose in (*track.pose, *track.movers.get(_donor_id(world), []))]
+    xs, ys = [place[0] for place in places], [place[1] for place in places]
+    left, right = max(lot[0], min(xs) - MARGIN), min(lot[2], max(xs) + MARGIN)
+    return left, max(lot[1], min(ys) - MARGIN), right, min(lot[3], max(ys) + MARGIN)
+
+
+def _donor_id(world: Json) -> str:
+    donor = world.get("donor")
+    return str(_mapping(donor).get("id", donor))
 
 
 def _frame(axes: Axes, bounds: tuple[float, float, float, float]) -> None:
@@ -309,10 +329,9 @@ def _draw_legend(figure: Figure, track: _Track, bands: Sequence[_Band], colours:
     from matplotlib.lines import Line2D
 
     handles = []
-    for act, colour in colours.items():
-        lasted = sum(band.end - band.start for band in bands if band.act == act) / max(1, len(track.t))
-        name = _name(act) if any(colours) else "driven"
-        handles.append(Line2D([], [], color=colour, lw=6, label=f"{name}  {lasted:.0%}"))
+    for act, ticks in _lasted(bands).items():
+        words = f"{_name(act) if any(colours) else 'driven'}  {ticks * _period(track):.1f} s"
+        handles.append(Line2D([], [], color=colours[act], lw=6, label=words))
     handles.append(Line2D([], [], color=INK, lw=1, ls=":", label="odometry"))
     kinds = [*_marks(track), ([b.start for b in bands if FLEEING.search(b.act or "")], "X", DANGER, "runaway")]
     for at, marker, colour, word in kinds:
@@ -337,7 +356,7 @@ def _figure(recording: Recording, track: _Track, verdict: str) -> Figure:
 
     world = _mapping(recording.header.get("world")) or recording.header
     bands = _bands(track.act)
-    colours = _colours(bands)
+    colours = _colours(_lasted(bands), str(_mapping(recording.header.get("plan")).get("text") or ""))
     xmin, ymin, xmax, ymax = _bounds(world, track)
     across = WIDTH * 0.89 * (ymax - ymin) / (xmax - xmin)  # [in] height of the lot at full width
     figure = Figure(figsize=(WIDTH, across + 3.4), dpi=130)
