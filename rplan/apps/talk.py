@@ -50,13 +50,18 @@ def say(diagnostics: Iterable[Diagnostic], texts: Mapping[str, str]) -> None:
         some = [d for d in every if d.severity == severity]
         shown = some[:MOST_NOTES] if severity == "note" else some
         for diagnostic in shown:
-            click.echo(render(diagnostic, texts) + "\n", err=True)
+            click.echo(printable(render(diagnostic, texts)) + "\n", err=True)
         if len(shown) < len(some):
             click.echo(f"… and {len(some) - len(shown)} more notes (all of them with --json)\n", err=True)
     if every:
         counts = {s: sum(d.severity == s for d in every) for s in ("error", "warning", "note")}
         words = [f"{count} {name}{'' if count == 1 else 's'}" for name, count in counts.items() if count]
         click.echo(", ".join(words), err=True)
+
+
+def printable(text: str) -> str:
+    """The text without what a terminal would obey."""
+    return "".join(letter if letter.isprintable() or letter == "\n" else "\ufffd" for letter in text)
 
 
 def as_plain(diagnostic: Diagnostic) -> Mapping[str, object]:

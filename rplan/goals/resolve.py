@@ -52,15 +52,28 @@ def _named(
             related=[Related("defined here", definition.span)],
         )  # fmt: skip
     if name in inside:
-        path = " → ".join((*inside[inside.index(name) :], name))
-        scope.findings.add("error", "condition-circle", f"`{name}` depends on itself within one tick: {path}", span)
+        _circle(inside[inside.index(name) :], span, scope)
         return c.Constant(False)
     return resolve_condition(definition.condition, scope, (*inside, name))
+
+
+def _circle(names: tuple[str, ...], span: Span, scope: Scope) -> None:
+    """Report a circle once, as it looks from the condition of it that is defined first."""
+    if names[0] == next(name for name in scope.conditions if name in names):
+        path = " → ".join((*names, names[0]))
+        related = [Related(f"`{name}` is defined here", scope.conditions[name].span) for name in names]
+        scope.findings.add(
+            "error", "condition-circle", f"`{names[0]}` depends on itself within one tick: {path}", span,
+            related=related,
+        )  # fmt: skip
 
 
 def _comparison(compare: p.Compare, scope: Scope) -> c.Comparison:
     left = _number(compare.left, scope)
     right = _number(compare.right, scope)
+    for term, other in ((left, right), (right, left)):
+        if term.type is None:
+            scope.take_for(term.name, Type("number", _unit(other)), term.span)
     left, right = _same_unit(left, right, compare.span, scope)
     return c.Comparison(f"({compare.operator} {left.text} {right.text})", compare.operator, left, right)
 
@@ -74,6 +87,10 @@ def _number(expression: p.Number | p.Call, scope: Scope) -> c.Term:
             "error", "type-mismatch", f"`{term.text}` is of type {term.type}; a number is compared", expression.span
         )
     return term
+
+
+def _unit(term: c.Term) -> str:
+    return term.type.unit if term.type is not None else ""
 
 
 def _same_unit(left: c.Term, right: c.Term, span: Span, scope: Scope) -> tuple[c.Term, c.Term]:
@@ -139,6 +156,8 @@ def _call(call: p.Call, scope: Scope, wanted: Type | None, what: str) -> c.Term:
     function = scope.function(call.name, call.span, what)
     parameters: tuple[Type | None, ...] = (None,) * len(call.arguments)
     kind = wanted
+    if function is None and wanted is not None:
+        scope.take_for(call.name, wanted, call.span)
     if function is not None:
         kind = function.type
         if len(function.parameters) != len(call.arguments):

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 from rplan.goals.signature import COMPETENCE_FAILED, FunctionSignature, Libraries, LibrarySignature
 from rplan.lang.diagnostic import Diagnostic, Related, Severity
-from rplan.lang.plan import NamedCondition, OutputDeclaration, Plan, Rule
+from rplan.lang.plan import NamedCondition, OutputDeclaration, Plan, Rule, Type
 from rplan.lang.source import Span
 from rplan.lang.suggest import close
 
@@ -54,6 +54,7 @@ class Scope:
     strict: bool
     used: dict[tuple[str, str], None] = field(default_factory=dict)
     unknown: dict[tuple[str, str], None] = field(default_factory=dict)
+    taken: dict[str, tuple[Type, Span]] = field(default_factory=dict)
 
     def function(self, name: str, span: Span, what: str) -> FunctionSignature | None:
         """The function of this name; an unknown one is noted once, a close one is an error."""
@@ -63,6 +64,17 @@ class Scope:
         names = [*self.functions, *(self.conditions if what == "condition" else ())]
         self.stranger("function", name, names, span, f"`{name}` is declared nowhere: it is taken for a {what}")
         return None
+
+    def take_for(self, name: str, kind: Type, span: Span) -> None:
+        """A place takes an undeclared function for this type; two places that do not agree are an error (L5, L6)."""
+        known, first = self.taken.setdefault(name, (kind, span))
+        if known.name == kind.name and "" in (known.unit, kind.unit):
+            self.taken[name] = (known if known.unit else kind, first)
+        elif known != kind:
+            self.findings.add(
+                "error", "type-mismatch", f"`{name}` is declared nowhere and taken for {kind} here", span,
+                related=[Related(f"and for {known} here", first)], hint="`declare` it, or rename one of them",
+            )  # fmt: skip
 
     def output(self, name: str, span: Span) -> OutputDeclaration | None:
         """The declaration of an output, if there is one."""

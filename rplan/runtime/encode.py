@@ -8,6 +8,7 @@ The encoder is generated Python, one line a percept and one an atom, since it ru
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import cast
@@ -42,16 +43,28 @@ def encoder(goals: Goals, atoms: Sequence[Atom]) -> Encode:
     lines.append(f"    return ({''.join(f'{_expression(atom, names)}, ' for atom in atoms)})")
     scope: dict[str, object] = {
         "missing": lambda key: PerceptError(key, "the plan reads it, and there is no value"),
-        "wrong_number": _wrong_number,
-        "wrong_number_error": lambda key, value: PerceptError(key, f"a finite number is wanted, not {value!r}"),
-        "wrong_bool_error": lambda key, value: PerceptError(key, f"true or false is wanted, not {value!r}"),
+        "wrong_number": wrong_number,
+        "wrong_number_error": lambda key, value: PerceptError(key, f"a finite number is wanted, not {_shown(value)}"),
+        "wrong_bool_error": lambda key, value: PerceptError(key, f"true or false is wanted, not {_shown(value)}"),
     }
     exec(compile("\n".join(lines), "<encoder>", "exec"), scope)
     return cast(Encode, scope["encode"])
 
 
-def _wrong_number(value: object) -> bool:
-    return isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value)
+def wrong_number(value: object) -> bool:
+    """Whether it is no finite number."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return True
+    try:
+        return not math.isfinite(value)
+    except OverflowError:
+        return True
+
+
+def _shown(value: object) -> str:
+    """A value as JSON has it, cut short."""
+    text = json.dumps(value, default=repr)
+    return text if len(text) <= 40 else f"{text[:40]}…"
 
 
 def _expression(atom: Atom, names: Mapping[str, str]) -> str:

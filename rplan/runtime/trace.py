@@ -45,15 +45,14 @@ class Trace:
 
     def line(self, number: int, decision: Decision) -> str:
         """One line of `rplan tick` (L22)."""
-        return _compact(
-            {
-                "tick": number,
-                "hole": decision.hole,
-                "outputs": texts(decision.outputs),
-                "sent": texts(decision.sent),
-                "way": way_json(self.way(decision)),
-            }
-        )
+        line = {
+            "tick": number,
+            "hole": decision.hole,
+            "outputs": texts(decision.outputs),
+            "sent": texts(decision.sent),
+            "way": way_json(self.way(decision)),
+        }
+        return json.dumps(line, ensure_ascii=False)
 
     def _sent(self, term: Term | None, value: object) -> object:
         """What a channel holds: the text of a competence or literal, a value of the run-time world as it came out."""

@@ -212,12 +212,19 @@ def _holes(situations: Situations, allow_holes: bool) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "hole",
             "warning" if allow_holes else "error",
-            "there is a situation in which no way is open: what must be done does not go together",
+            f"there is a situation in which no way is open: {_words(clash)}",
             clash[0].span if clash else ways.goals.top.span,
-            tuple(Related(f"and here `{do.output}` is set to {do.value.text}", do.span) for do in clash[1:]),
+            tuple(Related(f"and here to {do.value.text}", do.span) for do in clash[1:]),
             "let one of them be given up (`prio-and`), or add conditions that keep them apart",
             describe(witness, ways),
         )
+
+
+def _words(clash: list[Do]) -> str:
+    if not clash:
+        return "no alternative of what must be done goes together with the rest"
+    first, second = clash
+    return f"`{first.output}` must be set to {first.value.text} and to {second.value.text}"
 
 
 def _clashing(ways: Ways, witness: Witness) -> list[Do]:

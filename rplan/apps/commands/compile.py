@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from pathlib import Path
 
 import click
 
 from rplan.apps import talk
 from rplan.apps.drawing.dot import dot
-from rplan.apps.files import plan_file
+from rplan.apps.files import plan_file, unreadable
 from rplan.backends.python import emit
 from rplan.circuit.circuit import Circuit, print_circuit
 from rplan.circuit.stats import stats
@@ -84,5 +85,7 @@ def _write(text: str, output: str | None) -> None:
     if output is None:
         click.echo(text, nl=False)
         return
-    with click.open_file(output, "w", encoding="utf-8") as file:
-        file.write(text)
+    try:
+        Path(output).write_text(text, encoding="utf-8")
+    except OSError as error:
+        unreadable(Path(output), error)

@@ -12,13 +12,16 @@ from rplan.apps import talk
 from rplan.apps.files import InputError, plan_file
 from rplan.apps.wiring import decider
 from rplan.driver import Compiled
-from rplan.runtime.encode import PerceptError, PerceptValue
+from rplan.lang.suggest import close
+from rplan.runtime.encode import PerceptError, PerceptValue, wrong_number
 from rplan.runtime.trace import Trace
 
 
 @click.command("tick", short_help="Run a plan alone: percepts in, outputs out, one JSON object a line.")
 @click.argument("plan")
-@click.option("--input", "source", type=click.File("r", encoding="utf-8"), default="-", help="Default: standard input.")
+@click.option(
+    "--input", "source", type=click.File("r", encoding="utf-8-sig"), default="-", help="Default: standard input."
+)
 @click.option("--strict", is_flag=True, help="A name that nothing declares is an error.")
 @click.option("--allow-holes", is_flag=True, help="A hole is a warning.")
 def command(plan: str, source: TextIO, strict: bool, allow_holes: bool) -> None:
@@ -39,7 +42,7 @@ def command(plan: str, source: TextIO, strict: bool, allow_holes: bool) -> None:
         try:
             decision = decide.tick(values)
         except PerceptError as error:
-            raise InputError(f"line {line_number}: `{keys.name(error.key)}`: {_said(error)}") from None
+            raise keys.wrong(line_number, error) from None
         click.echo(trace.line(number, decision))
         number += 1
 
@@ -51,25 +54,24 @@ def _lines(source: TextIO) -> Any:
         raise InputError("the input is not text in UTF-8") from None
 
 
-def _said(error: PerceptError) -> str:
-    return str(error).removeprefix(f"{error.key}: ")
-
-
 class _Keys:
     """Which keys a line may have."""
 
     def __init__(self, compiled: Compiled) -> None:
         self._texts: dict[str, str] = {}
+        self._types: dict[str, str] = {}
         for function in compiled.goals.functions.values():
             if function.type is not None and function.type.name in ("bool", "number") and not function.parameters:
                 self._texts[function.name] = f"({function.name})"
+                self._types[f"({function.name})"] = function.type.name
         for term in compiled.goals.percepts():
             self._texts[term.text if term.arguments else term.name] = term.text
         self._names = {text: name for name, text in self._texts.items()}
 
-    def name(self, text: str) -> str:
-        """The key of a percept."""
-        return self._names.get(text, text)
+    def wrong(self, number: int, error: PerceptError) -> InputError:
+        """The error of a line, with the key as the user writes it."""
+        said = str(error).removeprefix(f"{error.key}: ")
+        return InputError(f"line {number}: `{self._names.get(error.key, error.key)}`: {said}")
 
     def read(self, line: str, number: int) -> Mapping[str, PerceptValue]:
         """The percept values of a line by canonical text; `InputError` naming line and key."""
@@ -83,9 +85,11 @@ class _Keys:
             return seen
 
         try:
-            value = json.loads(line, object_pairs_hook=unique)
+            value = json.loads(line.rstrip(), object_pairs_hook=unique)
         except json.JSONDecodeError as error:
             raise InputError(f"line {number}: not JSON: {error.msg} at column {error.colno}") from None
+        except ValueError:
+            raise InputError(f"line {number}: a number has too many digits") from None
         except RecursionError:
             raise InputError(f"line {number}: nested too deep") from None
         if not isinstance(value, dict):
@@ -94,6 +98,18 @@ class _Keys:
         for key, given in value.items():
             text = self._texts.get(key) or (key if key in self._names else None)
             if text is None:
-                raise InputError(f"line {number}: `{key}` is a percept that the plan neither declares nor reads")
+                meant = close(key, self._texts)
+                hint = f" (did you mean `{meant}`?)" if meant else ""
+                raise InputError(f"line {number}: `{key}` is a percept that the plan neither declares nor reads{hint}")
+            if text in values:
+                raise InputError(f"line {number}: `{self._names.get(text, text)}` is there twice, also as `{text}`")
+            self._check(number, text, given)
             values[text] = given
         return values
+
+    def _check(self, number: int, text: str, value: object) -> None:
+        """A percept that is declared has a value of its type, whether the plan reads it or not."""
+        kind = self._types.get(text)
+        if (kind == "bool" and not isinstance(value, bool)) or (kind == "number" and wrong_number(value)):
+            wanted = "true or false" if kind == "bool" else "a finite number"
+            raise InputError(f"line {number}: `{self._names[text]}`: {wanted} is wanted, not {json.dumps(value)[:40]}")
