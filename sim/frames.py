@@ -1,4 +1,4 @@
-"""Poses and angles: from one frame to another, and from degrees and feet to SI.
+"""Places and angles in the plane, as the simulator needs them.
 
 Takes and gives: plain numbers and `Pose`. Leaves alone: time and chance.
 """
@@ -10,19 +10,6 @@ import math
 from behaviours.interface import Pose, Vec2, wrap
 
 FOOT = 0.3048
-
-
-def from_body(p_WB: Pose, point: Vec2) -> Vec2:
-    """The point [m] of the body frame, seen in the world."""
-    c, s = math.cos(p_WB.theta), math.sin(p_WB.theta)
-    return p_WB.x + c * point[0] - s * point[1], p_WB.y + s * point[0] + c * point[1]
-
-
-def into_body(p_WB: Pose, point: Vec2) -> Vec2:
-    """The point [m] of the world, seen in the body frame."""
-    c, s = math.cos(p_WB.theta), math.sin(p_WB.theta)
-    dx, dy = point[0] - p_WB.x, point[1] - p_WB.y
-    return c * dx + s * dy, c * dy - s * dx
 
 
 def bearing(p_WB: Pose, point: Vec2) -> float:

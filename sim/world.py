@@ -59,7 +59,7 @@ Mover = Traveller | Roller | Shifter
 
 
 class World:
-    """One world in motion. `sense` any number of times a tick gives the same Reading; `step` ends the tick."""
+    """One world in motion: `sense` once a tick (asked again it gives the same Reading), then `step`."""
 
     def __init__(self, scenario: Scenario, seed: int) -> None:
         self.scenario, self.seed, self.tick = scenario, seed, 0

@@ -113,14 +113,9 @@ def _strips(keep_clear: tuple[KeepClear, ...], scenario: Scenario) -> Iterator[S
 
 
 def _point(place: Place, scenario: Scenario) -> Vec2:
-    match place:
-        case "robot":
-            return scenario.robot.start
-        case "donor":
-            return scenario.donor.at
-        case (x, y):
-            return float(x), float(y)
-    raise ValueError(f"no such place: {place!r}")
+    if isinstance(place, str):
+        return scenario.robot.start if place == "robot" else scenario.donor.at
+    return place
 
 
 def _lanes(things: list[Placed]) -> Iterator[Strip]:

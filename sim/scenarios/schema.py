@@ -172,13 +172,6 @@ def choice(*words: str) -> Callable[[Report, yaml.Node, str], str]:
     return check
 
 
-def yes_or_no(report: Report, node: yaml.Node, path: str) -> bool | Wrong:
-    """`true` or `false`."""
-    if not isinstance(node, yaml.ScalarNode) or node.value not in ("true", "false"):
-        return report.unexpected(node, path, "true or false")
-    return bool(node.value == "true")
-
-
 # --- what holds others ----------------------------------------------------------------------------
 
 

@@ -6,6 +6,8 @@ import math
 from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from sim.raycast import Circle
 from sim.scenarios.scenario import Between, load, loads
@@ -20,6 +22,19 @@ bounds: [-1, -1, 1, 1]
 robot: {start: [0, 0]}
 donor: {at: [3, 0]}
 """
+
+RICH = (
+    LEAST
+    + """\
+things:
+  - {kind: wall, from: [-10, 8], to: [10, 8]}
+  - {kind: car, track: [[0, 0], [5, 0, 2]], speed: 2, starts: {at: 20, every: 70}}
+  - {kind: trashcan, at: [2, 3], roll: {starts: {robot_left: 2.5}}}
+scatter:
+  - {kinds: [post], count: [1, 2], region: [0, 0, 9, 9], keep_clear: [{from: robot, to: [1, 2], by: 0.3}]}
+weather: {sun: 20 deg}
+"""
+)
 
 
 def problems(text: str) -> list[str]:
@@ -145,6 +160,29 @@ def test_a_file_of_other_bytes_is_one_clear_problem(tmp_path):
     (tmp_path / "lot.yaml").write_bytes(b"\xff\xfe\x00name")
     with pytest.raises(ScenarioError, match=r"lot.yaml:1:1: not a text in UTF-8"):
         load(tmp_path / "lot.yaml")
+
+
+def test_weather_and_sensors_are_set_by_name():
+    text = LEAST.replace("{start: [0, 0]}", "{start: [0, 0], sonar: {dropout: 0.2}, stereo: {period: 5}}")
+    scenario = loads(text + "weather: {sun: 20 deg, jitter: 1.5 deg, gusts: 0.1}\n")
+    assert (scenario.robot.sonar.dropout, scenario.robot.sonar.sd, scenario.robot.stereo.period) == (0.2, 0.01, 5.0)
+    assert scenario.weather.sun == pytest.approx(math.radians(20))
+    assert (scenario.weather.gust, scenario.weather.gusts) == (0.0, 0.1)
+
+
+@settings(max_examples=200, deadline=None, derandomize=True)
+@given(st.data())
+def test_a_mangled_scenario_is_read_or_refused_but_never_a_crash(data):
+    text = RICH
+    for _ in range(data.draw(st.integers(1, 3))):
+        start = data.draw(st.integers(0, len(text)))
+        end = data.draw(st.integers(start, min(len(text), start + 12)))
+        text = text[:start] + data.draw(st.text("[]{}:,- &*!|>\"'#\n\t0e.aé\x07", max_size=4)) + text[end:]
+    try:
+        loads(text, "lot.yaml")
+    except ScenarioError as error:
+        assert error.problems
+        assert str(error).startswith("lot.yaml:")
 
 
 def test_a_node_that_holds_itself_does_not_hang_the_reader():
