@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import Any, TextIO
+from typing import Any, BinaryIO
 
 import click
 
@@ -19,12 +19,10 @@ from rplan.runtime.trace import Trace
 
 @click.command("tick", short_help="Run a plan alone: percepts in, outputs out, one JSON object a line.")
 @click.argument("plan")
-@click.option(
-    "--input", "source", type=click.File("r", encoding="utf-8-sig"), default="-", help="Default: standard input."
-)
+@click.option("--input", "source", type=click.File("rb"), default="-", help="Default: standard input.")
 @click.option("--strict", is_flag=True, help="A name that nothing declares is an error.")
 @click.option("--allow-holes", is_flag=True, help="A hole is a warning.")
-def command(plan: str, source: TextIO, strict: bool, allow_holes: bool) -> None:
+def command(plan: str, source: BinaryIO, strict: bool, allow_holes: bool) -> None:
     """Read one JSON object a line, percept → value (numbers in SI), and write what PLAN decides, one a line.
 
     A percept's key is its name, or its canonical text where it has arguments. The first bad line ends it with exit
@@ -35,7 +33,8 @@ def command(plan: str, source: TextIO, strict: bool, allow_holes: bool) -> None:
     trace = Trace(compiled.ways)
     keys = _Keys(compiled)
     number = 0
-    for line_number, line in enumerate(_lines(source), start=1):
+    for line_number, raw in enumerate(source, start=1):
+        line = _text(raw, line_number)
         if not line.strip():
             continue
         values = keys.read(line, line_number)
@@ -47,11 +46,11 @@ def command(plan: str, source: TextIO, strict: bool, allow_holes: bool) -> None:
         number += 1
 
 
-def _lines(source: TextIO) -> Any:
+def _text(raw: bytes, number: int) -> str:
     try:
-        yield from source
+        return raw.decode("utf-8-sig" if number == 1 else "utf-8")
     except UnicodeDecodeError:
-        raise InputError("the input is not text in UTF-8") from None
+        raise InputError(f"line {number}: not text in UTF-8") from None
 
 
 class _Keys:
