@@ -9,7 +9,6 @@ obstacle two metres away would grow by a third of a metre to either side and clo
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 from behaviours.cores.geometry import echo
 from behaviours.interface import Pose, Ranges, Vec2

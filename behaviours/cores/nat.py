@@ -93,7 +93,10 @@ def make_plan(
     now: float,
     settings: NatSettings,
 ) -> NatPlan:
-    """The plan from the robot to the goal. before, memory: grouping and spins of the plan before (empty at first); now [s]."""
+    """The plan from the robot to the goal.
+
+    before, memory: grouping and spins of the plan before, empty at first. now [s]: the stamp that locks are held against.
+    """
     found, spans = _groups(circles, robot, goal, before, settings)
     grouping = {circles[i].ident: at for at, members in enumerate(found) for i in members}
     groups = [_assess(span, memory, now, settings) for span in spans if span]

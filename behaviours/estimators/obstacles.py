@@ -92,4 +92,3 @@ class Obstacles:
             locked = (opposite(group.spin), reading.stamp + self.settings[2].lock)
             self._spins = {**self._spins, **dict.fromkeys(group.idents, locked)}
             self._replan(reading.odometry.pose, self.plan.goal, reading.stamp)
-

@@ -89,7 +89,7 @@ class World:
     """A robot among things. `donor`: a disc with a beacon, which also counts as a thing."""
 
     seed: int = 0
-    pose: Pose = Pose(0.0, 0.0, 0.0)
+    pose: Pose = field(default_factory=lambda: Pose(0.0, 0.0, 0.0))
     discs: list[Disc] = field(default_factory=list)
     walls: list[Wall] = field(default_factory=list)
     donor: Disc | None = None

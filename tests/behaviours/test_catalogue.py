@@ -1,0 +1,96 @@
+"""The catalogue: what is offered is there, parameters reach what they name, and mistakes are told."""
+
+import math
+
+import pytest
+
+from behaviours.catalogue import LIBRARIES, library
+from behaviours.estimators.ir_search import IrSearch
+from behaviours.interface import ACTUATORS, Workshop
+
+NAMES = sorted(LIBRARIES)
+
+
+def built(*names, **values):
+    workshop = Workshop()
+    return [library(n).build(values.get(n.replace("-", "_"), {}), workshop) for n in names], workshop
+
+
+def test_the_libraries_of_the_find_and_fetch_plan_are_there():
+    assert NAMES == ["find-and-fetch", "ir-search", "natigation", "robot", "runaway", "stereo-search"]
+    with pytest.raises(TypeError):
+        LIBRARIES["mine"] = library("robot")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_word_is_brought_to_life_as_what_it_was_offered(name):
+    (offer,), _ = built(name)
+    by_type = {"command": offer.competences, "pose": offer.values, "bool": offer.percepts, "number": offer.percepts}
+    for function in library(name).functions:
+        assert function.name in by_type[function.type]
+    assert len(library(name).functions) == len(offer.percepts) + len(offer.values) + len(offer.competences)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_percepts_have_the_type_that_they_were_offered_as_before_any_reading(name):
+    (offer,), _ = built(name)
+    for function in library(name).functions:
+        if function.name in offer.percepts:
+            value = offer.percepts[function.name]()
+            assert isinstance(value, bool) if function.type == "bool" else math.isfinite(value)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_words_and_parameters_are_documented_and_named_once(name):
+    item = library(name)
+    names = [f.name for f in item.functions] + [p.name for p in item.parameters]
+    assert len(set(names)) == len(names)
+    assert all(thing.doc.endswith(".") for thing in (*item.functions, *item.parameters))
+    assert all(set(f.actuators) <= set(ACTUATORS) for f in item.functions)
+    assert all(f.actuators for f in item.functions if f.type == "command")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_defaults_given_outright_make_the_same_library(name):
+    values = {p.name: p.default for p in library(name).parameters}
+    built(name, **{name.replace("-", "_"): values})
+
+
+def test_a_parameter_reaches_what_it_names(standin):
+    world = standin.World(discs=[standin.Disc(0.35 + 0.3 + 0.25, 0.0, 0.25)], sonar_sd=0.0)
+    careful = standin.Robot("runaway", runaway={"safety-radius": 0.4})
+    bold = standin.Robot("runaway")
+    reading = world.read()
+    assert careful.sense(reading)["anything-is-too-close"] and not bold.sense(reading)["anything-is-too-close"]
+
+
+@pytest.mark.parametrize("value", [-0.1, math.inf, math.nan])
+def test_a_parameter_out_of_range_is_an_error_that_names_it(value):
+    with pytest.raises(ValueError, match="safety-radius"):
+        built("runaway", runaway={"safety-radius": value})
+
+
+def test_a_count_must_be_whole():
+    with pytest.raises(ValueError, match="obstacles must be a whole number"):
+        built("natigation", natigation={"obstacles": 2.5})
+
+
+def test_an_object_as_high_as_the_camera_is_an_error():
+    with pytest.raises(ValueError, match="object-height"):
+        built("stereo-search", stereo_search={"object-height": 1.2})
+
+
+def test_libraries_share_what_they_both_need():
+    _, workshop = built("ir-search", "stereo-search", "find-and-fetch", "natigation", "robot")
+    assert sum(isinstance(e, IrSearch) for e in workshop.estimators) == 1
+
+
+def test_parameters_that_would_come_too_late_are_an_error():
+    with pytest.raises(ValueError, match="use ir-search before"):
+        built("find-and-fetch", "ir-search", ir_search={"step": 0.1})
+
+
+def test_estimators_are_updated_after_those_that_they_read():
+    _, workshop = built("find-and-fetch")
+    kinds = [type(e).__name__ for e in workshop.estimators]
+    assert kinds.index("IrSearch") < kinds.index("StereoSearch") < kinds.index("DonorMemory")
