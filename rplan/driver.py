@@ -6,9 +6,7 @@ is to be said of it; `PlanError` with everything that is wrong. Leaves alone: ro
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -18,16 +16,15 @@ from rplan.circuit.circuit import Circuit
 from rplan.goals.expand import expand
 from rplan.goals.goal import Goals
 from rplan.goals.signature import Libraries
+from rplan.lang.depth import deep_recursion
 from rplan.lang.diagnostic import Diagnostic, PlanError
-from rplan.lang.parse import parse
+from rplan.lang.parse import parse_text
 from rplan.lang.plan import Plan
-from rplan.lang.reader import read
 from rplan.lang.source import Source
 from rplan.ways.coverage import find
 from rplan.ways.reduce import Ways, reduce
 
 NO_LIBRARIES: Libraries = MappingProxyType({})
-DEEPEST_RECURSION = 100_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,8 +46,8 @@ class Compiled:
 
 def load(source: Source) -> tuple[Plan, tuple[Diagnostic, ...]]:
     """Text → Plan: well formed, names not looked up."""
-    with _deep_recursion():
-        return parse(read(source), source)
+    with deep_recursion():
+        return parse_text(source)
 
 
 def compile_plan(
@@ -61,7 +58,7 @@ def compile_plan(
     strict: a name that nothing declares is an error. allow_holes: a hole is a warning. Raises `PlanError` with all that
     is wrong; what was only noticed is in `Compiled.diagnostics`.
     """
-    with _deep_recursion():
+    with deep_recursion():
         plan, said = load(source)
         found = list(said)
         try:
@@ -74,14 +71,3 @@ def compile_plan(
         if any(diagnostic.severity == "error" for diagnostic in found):
             raise PlanError(found)
         return Compiled(source, plan, goals, ways, passes.run(build(ways)), tuple(found))
-
-
-@contextmanager
-def _deep_recursion() -> Iterator[None]:
-    """Goals nest as deeply as texts do; frames of Python functions live on the heap."""
-    before = sys.getrecursionlimit()
-    sys.setrecursionlimit(max(before, DEEPEST_RECURSION))
-    try:
-        yield
-    finally:
-        sys.setrecursionlimit(before)
