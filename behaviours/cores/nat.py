@@ -95,7 +95,7 @@ def make_plan(
 ) -> NatPlan:
     """The plan from the robot to the goal.
 
-    before, memory: grouping and spins of the plan before, empty at first. now [s]: the stamp that locks are held against.
+    before, memory: grouping and spins of the plan before, empty at first. now [s]: what locks are held against.
     """
     found, spans = _groups(circles, robot, goal, before, settings)
     grouping = {circles[i].ident: at for at, members in enumerate(found) for i in members}
