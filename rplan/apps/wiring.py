@@ -17,6 +17,7 @@ from rplan.goals.signature import FunctionSignature, Libraries, LibrarySignature
 from rplan.lang.diagnostic import Diagnostic, PlanError
 from rplan.lang.plan import Type
 from rplan.lang.reader import source_from_file
+from rplan.lang.source import Source
 from rplan.runtime.controller import Controller, Tick, UnboundError
 from rplan.runtime.robot import Channels, Crew
 from rplan.runtime.tick import Decider
@@ -40,7 +41,14 @@ def signatures() -> Libraries:
 
 def compile_file(path: Path, *, strict: bool = False, allow_holes: bool = False) -> Compiled:
     """The plan in a file, compiled against every library; `PlanError`, `OSError`."""
-    return compile_plan(source_from_file(path), signatures(), strict=strict, allow_holes=allow_holes)
+    return compile_source(source_from_file(path), strict=strict, allow_holes=allow_holes)
+
+
+def compile_source(source: Source, *, strict: bool = False, allow_holes: bool = False) -> Compiled:
+    """A plan compiled against every library; `PlanError`, also where a library refuses its parameters."""
+    compiled = compile_plan(source, signatures(), strict=strict, allow_holes=allow_holes)
+    crew(compiled)
+    return compiled
 
 
 def decider(compiled: Compiled) -> Decider:

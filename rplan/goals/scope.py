@@ -62,7 +62,8 @@ class Scope:
         if name in self.functions:
             return self.functions[name]
         names = [*self.functions, *(self.conditions if what == "condition" else ())]
-        self.stranger("function", name, names, span, f"`{name}` is declared nowhere: it is taken for a {what}")
+        space = "condition" if what == "condition" else "function"
+        self.stranger(space, name, names, span, f"`{name}` is declared nowhere: it is taken for a {what}")
         return None
 
     def take_for(self, name: str, kind: Type, span: Span) -> None:

@@ -275,6 +275,6 @@ def _dead(situations: Situations) -> Iterator[Diagnostic]:
         if all(situations.possible(guard) is False for guard in guards[key]):
             yield Diagnostic(
                 "dead", "warning",
-                f"`(do {do.output} {do.value.text})` is never done: in every situation another way wins",
+                f"`(do {do.output} {do.value.text})` is never done, whatever the situation",
                 do.span,
             )  # fmt: skip
