@@ -47,6 +47,7 @@ def test_scattered_things_keep_their_gaps_and_leave_the_view_to_the_donor_free()
             assert min(gaps) >= 1.5
             assert math.dist(at, (0, 0)) - radius - 0.35 >= 1.5
             assert distance_to_segment(at, (0, 0), LOT.donor.at) >= 0.3 + radius
+            assert distance_to_segment(at, (5.4, -3.8), (5.4, 2.9)) >= 0.25 + radius  # where somebody walks
 
 
 def test_the_heading_is_drawn_from_the_interval():

@@ -186,6 +186,17 @@ def test_what_stands_between_hides_the_beacon(small):
     assert heard("{kind: post, at: [2, 0], height: 0.5}")
 
 
+def test_the_beacon_is_heard_from_where_the_robot_is(small):
+    world = World(small(donor="[6, 1]"), 0)
+    list(drive(world, Command(Drive(0.2, 0.0)), 101))
+    ir = [reading.ir for reading in drive(world, STOP, 15) if reading.ir and reading.ir.fresh][-1]
+    x = world.robot.pose.x
+    bearing, distance = math.atan2(1, 6 - x), math.hypot(6 - x, 1)
+    assert x == pytest.approx(2.0, abs=0.05)
+    assert math.degrees(ir.offset) == pytest.approx(math.degrees(bearing), abs=1.2)
+    assert ir.strength == pytest.approx(3.2 * (7.62 / distance) ** 2 * math.cos(bearing) ** 2, abs=0.8)
+
+
 def test_the_reader_fixates_once_a_second_and_anew_after_the_head_has_moved(small):
     world = World(small(donor="[5, 0]"), 0)
     fresh = [reading.tick for reading in drive(world, STOP, 25) if reading.ir and reading.ir.fresh]

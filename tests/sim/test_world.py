@@ -98,6 +98,15 @@ def test_being_struck_by_what_moves_is_not(small):
     assert [(touch.thing, touch.driven_into) for touch in seen][:1] == [("person-1", False)]
 
 
+def test_who_comes_faster_has_struck(small):
+    runner = "{kind: person, track: [[6, 0], [-6, 0]], speed: 3, then: stay}"
+    world, seen = World(small(runner), 0), []
+    for _ in range(30):
+        world.step(AHEAD)
+        seen += world.begun
+    assert [(touch.thing, touch.driven_into) for touch in seen][:1] == [("person-1", False)]
+
+
 def test_a_contact_ends_when_the_robot_leaves(small):
     world = let(World(small("{kind: post, at: [1, 0]}"), 0), AHEAD, 5)
     assert len(world.touches) == 1
@@ -140,6 +149,20 @@ def test_a_car_brakes_for_a_robot_in_its_lane_and_goes_on_when_it_is_gone(small)
     let(world, Command(Drive(0.0, 0.8)), math.pi / 2 / 0.8)
     away = let(let(world, AHEAD, 10), STOP, 8)
     assert thing(away, "car").pose.x == pytest.approx(9, abs=0.3)
+
+
+def test_a_car_does_not_wait_for_a_robot_behind_it(small):
+    car = "{kind: car, id: car, track: [[3, 0], [9, 0]], speed: 2, then: stay}"
+    assert thing(let(World(small(car), 0), STOP, 6), "car").pose.x == pytest.approx(9, abs=0.3)
+
+
+def test_a_car_brakes_for_a_trashcan_and_a_person_walks_past_one(small):
+    car = "{kind: car, id: car, track: [[-9, 4], [9, 4]], speed: 2, then: stay}"
+    world = let(World(small(car, "{kind: trashcan, at: [0, 4]}"), 0), STOP, 10)
+    assert 1.5 < -0.3 - (thing(world, "car").pose.x + 2.2) < 3.0
+    walk = "{kind: person, id: walker, track: [[-4, 4], [4, 4]], speed: 1, then: stay}"
+    world = let(World(small(walk, "{kind: trashcan, at: [0, 4.9]}"), 0), STOP, 9)
+    assert thing(world, "walker").pose.x == pytest.approx(4, abs=0.3)
 
 
 def test_a_car_in_the_next_lane_drives_past(small):
