@@ -1,0 +1,104 @@
+"""Pages that are made from the code are as the code is. `RPLAN_BLESS=1` in the environment writes them again."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from behaviours.catalogue import LIBRARIES
+from behaviours.interface import Library
+from rplan.apps.wiring import PlanBrain, signatures
+from rplan.driver import compile_plan
+from rplan.lang.diagnostic import Diagnostic, PlanError, render
+from rplan.lang.source import Source
+
+BLESS = os.environ.get("RPLAN_BLESS") == "1"
+SECTION = re.compile(r"^## ([\w-]+)\n(.*?)(?=^## |\Z)", re.MULTILINE | re.DOTALL)
+EXAMPLE = re.compile(r"^```lisp wrong\n(.*?)^```\n\n```text\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+WHERE_THE_CODE_IS = {"Diagnostic": 0, "error": 0, "_unexpected": 2, "add": 1}
+WITHOUT_EXAMPLE = ("not-decided", "not-text", "too-deep", "too-large", "too-many-errors")
+"""Codes whose examples are too long or no text; tests/errors has most of them."""
+
+
+def same(page: Path, expected: str) -> bool:
+    if BLESS:
+        page.write_text(expected, encoding="utf-8")
+    return page.read_text(encoding="utf-8") == expected
+
+
+# --- libraries ----------------------------------------------------------------------------------------
+
+
+def cell(text: str) -> str:
+    return text.replace("|", "\\|")
+
+
+def library_section(library: Library) -> str:
+    lines = [f"## {library.name}", "", library.doc, "", "| function | type | says |", "| --- | --- | --- |"]
+    lines += [f"| `({f.name})` | {f'{f.type} {f.unit}'.strip()} | {cell(f.doc)} |" for f in library.functions]
+    if library.parameters:
+        lines += ["", "| parameter | default | says |", "| --- | --- | --- |"]
+        for p in library.parameters:
+            default = f"{p.default:g} {p.unit}".strip() if isinstance(p.default, float) else str(p.default)
+            lines.append(f"| `:{p.name}` | {default} | {cell(p.doc)} |")
+    return "\n".join(lines) + "\n"
+
+
+def test_the_page_of_the_libraries_is_as_the_catalogue(root: Path) -> None:
+    page = root / "docs" / "reference" / "libraries.md"
+    head = page.read_text(encoding="utf-8").partition("\n## ")[0].rstrip("\n") + "\n"
+    assert same(page, "\n".join([head, *map(library_section, LIBRARIES.values())]))
+
+
+# --- diagnostics --------------------------------------------------------------------------------------
+
+
+def codes_in(path: Path) -> Iterator[str]:
+    """Every code that a file gives to a diagnostic."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Call):
+            position = WHERE_THE_CODE_IS.get(ast.unparse(node.func).split(".")[-1], len(node.args))
+            for part in ast.walk(node.args[position]) if position < len(node.args) else ():
+                if isinstance(part, ast.Constant) and isinstance(part.value, str):
+                    yield part.value
+
+
+def test_every_code_in_the_sources_has_a_section_and_every_section_a_code(root: Path) -> None:
+    codes = {code for path in sorted((root / "rplan").rglob("*.py")) for code in codes_in(path)}
+    page = (root / "docs" / "reference" / "diagnostics.md").read_text(encoding="utf-8")
+    assert [code for code, _ in SECTION.findall(page)] == sorted(codes)
+
+
+def findings(text: str) -> tuple[Diagnostic, ...]:
+    """What is said of a plan that is compiled and brought to life."""
+    said: tuple[Diagnostic, ...] = ()
+    try:
+        compiled = compile_plan(Source("plan.rplan", text), signatures())
+        said = compiled.diagnostics
+        PlanBrain(compiled)
+    except PlanError as error:
+        return (*said, *error.diagnostics)
+    return said
+
+
+def test_every_example_of_a_diagnostic_says_what_the_page_says(root: Path) -> None:
+    page = root / "docs" / "reference" / "diagnostics.md"
+    text = page.read_text(encoding="utf-8")
+    without = []
+    expected = text.partition("## ")[0]
+    for code, body in SECTION.findall(text):
+        example = EXAMPLE.search(body)
+        if example is None:
+            without.append(code)
+            expected += f"## {code}\n{body}"
+            continue
+        plan = example[1]
+        said = [render(found, {"plan.rplan": plan}) for found in findings(plan) if found.code == code]
+        assert said, f"the example of {code} does not show it"
+        shown = f"```lisp wrong\n{plan}```\n\n```text\n{said[0]}\n```"
+        expected += f"## {code}\n" + body.replace(example[0], shown)
+    assert tuple(without) == WITHOUT_EXAMPLE
+    assert same(page, expected)
