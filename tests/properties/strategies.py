@@ -11,14 +11,19 @@ from hypothesis import strategies as st
 
 from rplan.circuit.cell import Cell, Op
 from rplan.circuit.circuit import Circuit, Port, Register
-from rplan.goals.condition import AllOf, AnyOf, Condition, Constant, Not, Percept, Term
+from rplan.goals.condition import AllOf, AnyOf, Comparison, Condition, Constant, Not, Percept, Term
 from rplan.goals.goal import And, Anything, Do, Goal, Goals, If, Or, Output, PrioAnd, walk
 from rplan.goals.signature import BOOL
+from rplan.lang.plan import Comparator, Type
 from rplan.lang.source import NOWHERE
 
 ATOMS = ("(a)", "(b)", "(c)", "(d)")
 OUTPUTS = ("x", "y", "z")
 VALUES = ("(p)", "(q)")
+NUMBERS = ("(near)", "(far)")
+BOUNDS = (1.0, 2.5)
+EVERY_ORDER = (0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5)
+"""Numbers that stand in every order to one another and to the bounds."""
 
 
 def percept(text: str) -> Percept:
@@ -29,8 +34,28 @@ def do(output: str, value: str) -> Do:
     return Do(output, Term("call", value[1:-1], (), None, None, NOWHERE), "(goalem)", NOWHERE)
 
 
-def conditions() -> st.SearchStrategy[Condition]:
-    leaves = st.sampled_from(ATOMS).map(percept) | st.booleans().map(Constant)
+def number(side: str | float) -> Term:
+    if isinstance(side, str):
+        return Term("call", side[1:-1], (), None, None, NOWHERE)
+    return Term("number", "", (), side, Type("number"), NOWHERE)
+
+
+def compare(operator: Comparator, left: str | float, right: str | float) -> Comparison:
+    sides = number(left), number(right)
+    return Comparison(f"({operator} {sides[0].text} {sides[1].text})", operator, *sides)
+
+
+def comparisons() -> st.SearchStrategy[Comparison]:
+    side = st.sampled_from((*NUMBERS, *BOUNDS))
+    operators: list[Comparator] = ["<", "<=", ">", ">=", "=", "/="]
+    return st.builds(compare, st.sampled_from(operators), side, side)
+
+
+def conditions(*, numbers: bool = False) -> st.SearchStrategy[Condition]:
+    atoms = ATOMS[:2] if numbers else ATOMS
+    leaves: st.SearchStrategy[Condition] = st.sampled_from(atoms).map(percept) | st.booleans().map(Constant)
+    if numbers:
+        leaves = leaves | comparisons()
     return st.recursive(
         leaves,
         lambda inner: st.one_of(
@@ -42,7 +67,7 @@ def conditions() -> st.SearchStrategy[Condition]:
     )
 
 
-def goals(*, alternatives: bool = True, max_leaves: int = 12) -> st.SearchStrategy[Goal]:
+def goals(*, alternatives: bool = True, numbers: bool = False, max_leaves: int = 12) -> st.SearchStrategy[Goal]:
     leaves = st.one_of(
         st.builds(do, st.sampled_from(OUTPUTS), st.sampled_from(VALUES)),
         st.builds(do, st.sampled_from(OUTPUTS), st.sampled_from(VALUES)),
@@ -52,7 +77,7 @@ def goals(*, alternatives: bool = True, max_leaves: int = 12) -> st.SearchStrate
     def extend(inner: st.SearchStrategy[Goal]) -> st.SearchStrategy[Goal]:
         several = st.lists(inner, min_size=1, max_size=4).map(tuple)
         nodes: list[st.SearchStrategy[Goal]] = [
-            st.builds(lambda c, a, b: If(c, a, b, "(goalem)", NOWHERE), conditions(), inner, inner),
+            st.builds(lambda c, a, b: If(c, a, b, "(goalem)", NOWHERE), conditions(numbers=numbers), inner, inner),
             several.map(lambda parts: And(parts, NOWHERE)),
             several.map(lambda parts: PrioAnd(parts, NOWHERE)),
             several.map(lambda parts: PrioAnd(parts, NOWHERE)),
