@@ -229,6 +229,11 @@ _IR = _parameters(
     ("pan_tolerance", "rad", "A fixation counts this near to where it was to look (chosen here)."),
     ("fixation_timeout", "s", "Longest wait for a fixation (chosen here)."),
     ("misses", "", "Fixations without an answer after which the search fails (chosen here)."),
+    ("turn_after", "", "Failed sweeps in a row after which the robot turns before the next (chosen here)."),
+    ("turn", "rad", "How far it turns then (chosen here)."),
+    ("turn_tolerance", "rad", "It has turned when it is this near (chosen here)."),
+    ("steering_gain", "", "Turn rate per angle, 1/s (chosen here)."),
+    ("max_turn_rate", "rad/s", "Greatest turn rate (chosen here)."),
 )
 _CROSSING = _parameters(
     CrossingSettings(),
@@ -255,7 +260,7 @@ def _build_ir_search(values: Values, workshop: Workshop) -> Offer:
         },
         competences={
             ir_search.START: Fixate(search.first_look, dict),
-            ir_search.CONTINUE: Fixate(search.look, search.progress),
+            ir_search.CONTINUE: Fixate(search.look, search.progress, search.turn_rate),
         },
     )
 

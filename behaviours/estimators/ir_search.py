@@ -21,13 +21,22 @@ START, CONTINUE = "start-ir-search", "continue-ir-search"
 
 @dataclass(frozen=True, slots=True)
 class IrSettings:
-    """Angles [rad], time [s]; misses: fixations without an answer after which the search gives up."""
+    """Angles [rad], time [s], gain [1/s], turn rate [rad/s]; misses: fixations without an answer that end the search.
+
+    A head that reaches only to the sides cannot find what is behind: after `turn_after` failed sweeps in a row, and
+    again after as many, the robot first turns by `turn`, so that three sweeps cover the circle.
+    """
 
     sweep: float = math.radians(90.0)
     step: float = math.radians(2.0)
     pan_tolerance: float = math.radians(0.5)
     fixation_timeout: float = 15.0
     misses: int = 3
+    turn_after: int = 2
+    turn: float = math.radians(120.0)
+    turn_tolerance: float = math.radians(3.0)
+    steering_gain: float = 1.5
+    max_turn_rate: float = 0.8
     crossing: CrossingSettings = field(default_factory=CrossingSettings)
 
     def angles(self) -> tuple[float, ...]:
@@ -53,16 +62,19 @@ class IrSearch:
         self.direction: Direction | None = None
         self.reason = ""
         self._angles = settings.angles()
+        self._failures = 0
+        self._facing: float | None = None
         self._restart(0.0)
 
     def update(self, reading: Reading, reports: Mapping[str, Report], channels: Channels) -> None:
         if START in reports:
+            self._face(reading.odometry.pose.theta)
             self.phase = "running"
             self.direction = None
             self._restart(reading.stamp)
         elif self.phase == "running" and CONTINUE not in reports:
             self.forget()
-        if self.phase == "running":
+        if self.phase == "running" and self._is_facing(reading):
             self._take(reading)
 
     def forget(self) -> None:
@@ -94,6 +106,14 @@ class IrSearch:
         """Where to look now."""
         return Head(self._angles[min(self._index, len(self._angles) - 1)], 0.0)
 
+    def turn_rate(self, reading: Reading) -> float:
+        """How to turn [rad/s], left positive, before the sweep."""
+        if self._facing is None:
+            return 0.0
+        limit = self.settings.max_turn_rate
+        wanted = self.settings.steering_gain * wrap(self._facing - reading.odometry.pose.theta)
+        return min(limit, max(-limit, wanted))
+
     def progress(self) -> dict[str, object]:
         """For reports."""
         return {"fixation": self._index, "of": len(self._angles), "heard": len(self._heard)}
@@ -103,6 +123,19 @@ class IrSearch:
         self._since = stamp
         self._misses = 0
         self._heard: list[tuple[float, float]] = []
+
+    def _face(self, heading: float) -> None:
+        """Turn away first, if sweeps this way have failed often enough."""
+        failed = self.is_no_good() and self._failures % self.settings.turn_after == 0
+        self._facing = wrap(heading + self.settings.turn) if failed else None
+
+    def _is_facing(self, reading: Reading) -> bool:
+        if self._facing is None:
+            return True
+        self._since = reading.stamp
+        if abs(wrap(self._facing - reading.odometry.pose.theta)) <= self.settings.turn_tolerance:
+            self._facing = None
+        return False
 
     def _take(self, reading: Reading) -> None:
         ir = reading.ir
@@ -126,5 +159,6 @@ class IrSearch:
     def _finish(self, found: Crossing, pose: Pose) -> None:
         self.phase = "done"
         self.reason = found.reason
+        self._failures = self._failures + 1 if found.reason else 0
         if not found.reason:
             self.direction = Direction(pose, wrap(pose.theta + found.bearing))

@@ -178,3 +178,13 @@ def test_the_same_run_twice_is_the_same(standin):
         run(robot, world, lambda: False, world.stamp + 20)
         ends.append((world.pose, robot.actions))
     assert ends[0] == ends[1]
+
+
+@pytest.mark.parametrize("bearing", [1.7, -1.7, 3.0])
+def test_a_donor_behind_the_robot_is_found_after_turning(standin, bearing):
+    world = lot(standin, bearing=bearing, feet=20.0)
+    robot = standin.Fetcher()
+    assert run(robot, world, robot.percepts["we-know-the-donor-direction"], 300)
+    assert wrap(robot.estimator(IrSearch).direction.bearing - bearing) == pytest.approx(0.0, abs=math.radians(2))
+    assert robot.failures in (["ir"] * 2, ["ir"] * 4)
+    assert math.hypot(world.pose.x, world.pose.y) < 0.01, "it turns on the spot"
