@@ -18,9 +18,14 @@ from rplan.lang.suggest import close
 
 @dataclass(slots=True)
 class Findings:
-    """Diagnostics as they are found."""
+    """Diagnostics as they are found, each once."""
 
-    list: list[Diagnostic] = field(default_factory=list)
+    _found: dict[Diagnostic, None] = field(default_factory=dict)
+
+    @property
+    def list(self) -> list[Diagnostic]:
+        """All of them in the order in which they were found."""
+        return [*self._found]
 
     def add(
         self,
@@ -33,12 +38,10 @@ class Findings:
         hint: str = "",
     ) -> None:
         """Take down one finding; the same one twice counts once."""
-        found = Diagnostic(code, severity, message, span, tuple(related), hint)
-        if found not in self.list:
-            self.list.append(found)
+        self._found.setdefault(Diagnostic(code, severity, message, span, tuple(related), hint))
 
     def failed(self) -> bool:
-        return any(d.severity == "error" for d in self.list)
+        return any(d.severity == "error" for d in self._found)
 
 
 @dataclass(slots=True)

@@ -10,11 +10,12 @@ simplest that fit (L26).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 
+import numpy as np
 import z3
 
 from rplan.goals.condition import Comparison, Percept, Term, compare
@@ -22,7 +23,12 @@ from rplan.goals.goal import Do, If
 from rplan.lang.diagnostic import Diagnostic, Related
 from rplan.lang.source import Span
 from rplan.lang.units import canonical_number
+from rplan.ways.exhaust import evaluate_many
 from rplan.ways.reduce import Ways
+
+TIMEOUT_MS = 20_000
+"""For one question to z3 [ms of wall clock]; past it the answer is that it is not decided."""
+SAMPLES = 1_024
 
 Witness = Mapping[str, bool | float]
 """Canonical text of a percept -> its value (numbers in SI), in textual order."""
@@ -41,7 +47,10 @@ class Situations:
         self.percepts = ways.goals.percepts()
         self._context = z3.Context()
         self._symbols = {term.text: self._symbol(term) for term in self.percepts}
-        self._nodes = self._translate()
+        self._solver = z3.Solver(ctx=self._context)
+        self._solver.set("timeout", TIMEOUT_MS)
+        self._nodes = self._define()
+        self._samples = _samples(ways)
 
     def _symbol(self, term: Term) -> z3.ExprRef:
         number = any(
@@ -74,41 +83,45 @@ class Situations:
             case "/=":
                 return left != right
 
-    def _translate(self) -> list[z3.BoolRef]:
+    def _define(self) -> list[z3.BoolRef]:
+        """One literal for each guard, defined by those of its operands."""
         nodes: list[z3.BoolRef] = []
-        for kind, a, b in self.ways.guards.nodes:
+        for number, (kind, a, b) in enumerate(self.ways.guards.nodes):
+            node = z3.Bool(f"guard {number}", self._context)
             match kind:
                 case "constant":
-                    nodes.append(z3.BoolVal(bool(a), self._context))
+                    meaning = z3.BoolVal(bool(a), self._context)
                 case "atom":
-                    nodes.append(self._atom(a))
+                    meaning = self._atom(a)
                 case "not":
-                    nodes.append(z3.Not(nodes[a]))
+                    meaning = z3.Not(nodes[a])
                 case "and":
-                    nodes.append(z3.And(nodes[a], nodes[b]))
+                    meaning = z3.And(nodes[a], nodes[b])
                 case "or":
-                    nodes.append(z3.Or(nodes[a], nodes[b]))
+                    meaning = z3.Or(nodes[a], nodes[b])
+            self._solver.add(node == meaning)
+            nodes.append(node)
         return nodes
 
-    def solver(self, guards: Iterable[int] = ()) -> z3.Solver:
-        """A solver in which all of the guards hold."""
-        solver = z3.Solver(ctx=self._context)
-        solver.set("timeout", 20_000)
-        for guard in guards:
-            solver.add(self._nodes[guard])
-        return solver
-
     def possible(self, guard: int) -> bool | Undecided:
-        """Whether a guard can hold."""
-        answer = self.solver([guard]).check()
+        """Whether a guard can hold. A sample that shows it spares the proof."""
+        if self._samples and self._samples[guard]:
+            return True
+        answer = self._solver.check(self._nodes[guard])
         return Undecided() if answer == z3.unknown else bool(answer == z3.sat)
 
     def witness(self, guard: int) -> Witness | Undecided | None:
         """The simplest situation in which the guard holds; None if there is none."""
-        solver = self.solver([guard])
-        answer = solver.check()
+        answer = self._solver.check(self._nodes[guard])
         if answer != z3.sat:
             return Undecided() if answer == z3.unknown else None
+        self._solver.push()
+        self._solver.add(self._nodes[guard])
+        witness = self._simplest(self._solver)
+        self._solver.pop()
+        return witness
+
+    def _simplest(self, solver: z3.Solver) -> Witness:
         self._fewest_true(solver)
         values: dict[str, bool | float] = {}
         for term in self.percepts:
@@ -156,17 +169,17 @@ class Situations:
 
     def taken_ways(self, limit: int) -> Iterator[Witness]:
         """A situation for each way that can be taken, at most `limit`; in the order in which z3 comes upon them."""
-        guards = [*self.ways.reached, *self.ways.given_up]
-        solver = self.solver()
-        solver.add(z3.Not(self._nodes[self.ways.hole]))
+        guards = [self._nodes[guard] for guard in dict.fromkeys(self.ways.signature())]
+        self._solver.push()
+        self._solver.add(z3.Not(self._nodes[self.ways.hole]))
         for _ in range(limit):
-            if solver.check() != z3.sat:
-                return
-            model = solver.model()
-            seen = [z3.is_true(model.eval(self._nodes[guard], model_completion=True)) for guard in guards]
-            same = z3.And([self._nodes[g] == value for g, value in zip(guards, seen, strict=True)])
+            if self._solver.check() != z3.sat:
+                break
+            model = self._solver.model()
             yield self._read(model)
-            solver.add(z3.Not(same))
+            seen = [z3.is_true(model.eval(guard, model_completion=True)) for guard in guards]
+            self._solver.add(z3.Or([z3.Not(g) if value else g for g, value in zip(guards, seen, strict=True)]))
+        self._solver.pop()
 
     def _read(self, model: z3.ModelRef) -> Witness:
         values: dict[str, bool | float] = {}
@@ -177,6 +190,21 @@ class Situations:
             else:
                 values[term.text] = float(value.as_fraction())
         return values
+
+
+def _samples(ways: Ways) -> list[int]:
+    """Every guard in some situations as bits, none where atoms imply one another: each percept alone true, alone
+    false, and by chance."""
+    if any(isinstance(atom, Comparison) for atom in ways.atoms):
+        return []
+    count = len(ways.atoms)
+    chance = np.random.default_rng(0)
+    alone, others = (1 << count) - 1, 2 * count
+    columns = [
+        1 << n | (alone ^ 1 << n) << count | int.from_bytes(chance.bytes(SAMPLES // 8), "little") << others
+        for n in range(count)
+    ]
+    return evaluate_many(ways.guards, columns, others + SAMPLES)
 
 
 def _exact(value: float) -> Fraction:

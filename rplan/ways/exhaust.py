@@ -1,14 +1,17 @@
 """Every situation of a plan at once, where its atoms are few and independent.
 
-Takes: `Ways`. Gives: in how many situations a guard holds. Leaves alone: plans that compare numbers, whose atoms imply
-one another; coverage.py decides those.
+Takes: `Ways`. Gives: in how many situations a guard holds, how many ways are taken. Leaves alone: plans that
+compare numbers, whose atoms imply one another; coverage.py decides those.
 
 A guard is evaluated once on integers that carry one bit a situation, so 4,096 situations cost as much as one.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from rplan.goals.condition import Percept
+from rplan.ways.guards import Guards
 from rplan.ways.reduce import Ways
 
 MOST_ATOMS = 20
@@ -21,22 +24,42 @@ def exhaustible(ways: Ways) -> bool:
 
 def count_situations(ways: Ways, guard: int) -> int:
     """In how many of the 2**atoms situations the guard holds."""
+    return _every(ways)[guard].bit_count()
+
+
+def count_ways(ways: Ways) -> int:
+    """How many different ways are taken in some situation."""
+    values = _every(ways)
+    classes = [((1 << (1 << len(ways.atoms))) - 1) ^ values[ways.hole]]
+    for guard in dict.fromkeys(ways.signature()):
+        split = (part for known in classes for part in (known & values[guard], known & ~values[guard]))
+        classes = [part for part in split if part]
+    return len(classes)
+
+
+def _every(ways: Ways) -> list[int]:
+    """For each guard the situations in which it holds, as bits."""
     situations = 1 << len(ways.atoms)
+    return evaluate_many(ways.guards, [_column(n, situations) for n in range(len(ways.atoms))], situations)
+
+
+def evaluate_many(guards: Guards, atoms: Sequence[int], situations: int) -> list[int]:
+    """The value of every node in many situations; bit s of an atom is its value in situation s."""
     every = (1 << situations) - 1
     values: list[int] = []
-    for kind, a, b in ways.guards.nodes:
+    for kind, a, b in guards.nodes:
         match kind:
             case "constant":
                 values.append(every if a else 0)
             case "atom":
-                values.append(_column(a, situations))
+                values.append(atoms[a])
             case "not":
                 values.append(values[a] ^ every)
             case "and":
                 values.append(values[a] & values[b])
             case "or":
                 values.append(values[a] | values[b])
-    return values[guard].bit_count()
+    return values
 
 
 def _column(atom: int, situations: int) -> int:

@@ -40,6 +40,11 @@ class Ways:
     reached: tuple[int, ...]
     given_up: tuple[int, ...]
 
+    def signature(self) -> tuple[int, ...]:
+        """The guards that tell one way from another: what is done, and what is given up."""
+        leaves = (node.number for node in self.layout.nodes if isinstance(node.goal, Do | Anything))
+        return (*(self.reached[number] for number in leaves), *self.given_up[1:])
+
 
 @dataclass(slots=True)
 class _Claims:

@@ -15,8 +15,10 @@ from rplan.circuit.circuit import Circuit, print_circuit
 from rplan.circuit.stats import stats
 from rplan.driver import Compiled
 from rplan.ways.coverage import Situations
+from rplan.ways.exhaust import count_ways, exhaustible
 
-MOST_WAYS = 10_000
+MOST_WAYS = 256
+"""Ways of a plan with many percepts, or with numbers, are counted up to here."""
 
 
 @click.command("compile", short_help="Compile a plan and say what a tick costs.")
@@ -33,16 +35,22 @@ def command(plan: str, form: str | None, output: str | None, strict: bool, allow
         _write(_emitted(compiled.circuit, form), output)
         return
     costs = stats(compiled.circuit)
-    ways = sum(1 for _ in Situations(compiled.ways).taken_ways(MOST_WAYS))
+    ways = _count(compiled)
     if as_json:
         talk.result({"plan": compiled.goals.name, "ways": ways, **asdict(costs)})
         return
     _write(_report(compiled, ways), output)
 
 
+def _count(compiled: Compiled) -> int:
+    if exhaustible(compiled.ways):
+        return count_ways(compiled.ways)
+    return sum(1 for _ in Situations(compiled.ways).taken_ways(MOST_WAYS))
+
+
 def _report(compiled: Compiled, ways: int) -> str:
     costs = stats(compiled.circuit)
-    more = " or more" if ways == MOST_WAYS else ""
+    more = " or more" if ways == MOST_WAYS and not exhaustible(compiled.ways) else ""
     rows = [
         ("ways that can be taken", f"{ways:,}{more}"),
         ("inputs", f"{costs.inputs:,}"),
