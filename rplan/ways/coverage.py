@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 
-import numpy as np
 import z3
 
 from rplan.goals.condition import Comparison, Percept, Term, compare
@@ -23,12 +22,11 @@ from rplan.goals.goal import Do, If
 from rplan.lang.diagnostic import Diagnostic, Related
 from rplan.lang.source import Span
 from rplan.lang.units import canonical_number
-from rplan.ways.exhaust import evaluate_many
+from rplan.ways.exhaust import has_comparisons, samples
 from rplan.ways.reduce import Ways
 
 TIMEOUT_MS = 20_000
 """For one question to z3 [ms of wall clock]; past it the answer is that it is not decided."""
-SAMPLES = 1_024
 
 Witness = Mapping[str, bool | float]
 """Canonical text of a percept -> its value (numbers in SI), in textual order."""
@@ -50,7 +48,7 @@ class Situations:
         self._solver = z3.Solver(ctx=self._context)
         self._solver.set("timeout", TIMEOUT_MS)
         self._nodes = self._define()
-        self._samples = _samples(ways)
+        self._samples = [] if has_comparisons(ways) else samples(ways)[0]
 
     def _symbol(self, term: Term) -> z3.ExprRef:
         number = any(
@@ -190,21 +188,6 @@ class Situations:
             else:
                 values[term.text] = float(value.as_fraction())
         return values
-
-
-def _samples(ways: Ways) -> list[int]:
-    """Every guard in some situations as bits, none where atoms imply one another: each percept alone true, alone
-    false, and by chance."""
-    if any(isinstance(atom, Comparison) for atom in ways.atoms):
-        return []
-    count = len(ways.atoms)
-    chance = np.random.default_rng(0)
-    alone, others = (1 << count) - 1, 2 * count
-    columns = [
-        1 << n | (alone ^ 1 << n) << count | int.from_bytes(chance.bytes(SAMPLES // 8), "little") << others
-        for n in range(count)
-    ]
-    return evaluate_many(ways.guards, columns, others + SAMPLES)
 
 
 def _exact(value: float) -> Fraction:

@@ -10,16 +10,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from rplan.goals.condition import Percept
 from rplan.ways.guards import Guards
 from rplan.ways.reduce import Ways
 
 MOST_ATOMS = 20
+SAMPLES = 1_024
+
+
+def has_comparisons(ways: Ways) -> bool:
+    """Whether atoms may imply one another, so that not every combination of them is a situation."""
+    return not all(isinstance(atom, Percept) for atom in ways.atoms)
 
 
 def exhaustible(ways: Ways) -> bool:
     """Whether every combination of atoms is a situation, and there are few enough."""
-    return len(ways.atoms) <= MOST_ATOMS and all(isinstance(atom, Percept) for atom in ways.atoms)
+    return len(ways.atoms) <= MOST_ATOMS and not has_comparisons(ways)
 
 
 def count_situations(ways: Ways, guard: int) -> int:
@@ -29,12 +37,33 @@ def count_situations(ways: Ways, guard: int) -> int:
 
 def count_ways(ways: Ways) -> int:
     """How many different ways are taken in some situation."""
-    values = _every(ways)
-    classes = [((1 << (1 << len(ways.atoms))) - 1) ^ values[ways.hole]]
+    return _classes(ways, _every(ways), 1 << len(ways.atoms))
+
+
+def count_sampled_ways(ways: Ways) -> int:
+    """How many different ways are taken in some samples: at least so many there are."""
+    return _classes(ways, *samples(ways))
+
+
+def _classes(ways: Ways, values: list[int], situations: int) -> int:
+    """Into how many classes the ways' signatures part the situations."""
+    classes = [((1 << situations) - 1) ^ values[ways.hole]]
     for guard in dict.fromkeys(ways.signature()):
         split = (part for known in classes for part in (known & values[guard], known & ~values[guard]))
         classes = [part for part in split if part]
     return len(classes)
+
+
+def samples(ways: Ways) -> tuple[list[int], int]:
+    """Every guard in some situations as bits, and their number: each percept alone true, alone false, and by chance."""
+    count = len(ways.atoms)
+    chance = np.random.default_rng(0)
+    alone, others = (1 << count) - 1, 2 * count
+    columns = [
+        1 << n | (alone ^ 1 << n) << count | int.from_bytes(chance.bytes(SAMPLES // 8), "little") << others
+        for n in range(count)
+    ]
+    return evaluate_many(ways.guards, columns, others + SAMPLES), others + SAMPLES
 
 
 def _every(ways: Ways) -> list[int]:

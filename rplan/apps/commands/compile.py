@@ -15,10 +15,10 @@ from rplan.circuit.circuit import Circuit, print_circuit
 from rplan.circuit.stats import stats
 from rplan.driver import Compiled
 from rplan.ways.coverage import Situations
-from rplan.ways.exhaust import count_ways, exhaustible
+from rplan.ways.exhaust import count_sampled_ways, count_ways, exhaustible, has_comparisons
 
-MOST_WAYS = 256
-"""Ways of a plan with many percepts, or with numbers, are counted up to here."""
+MOST_WAYS = 64
+"""Ways of a plan that compares numbers are counted up to here."""
 
 
 @click.command("compile", short_help="Compile a plan and say what a tick costs.")
@@ -35,24 +35,28 @@ def command(plan: str, form: str | None, output: str | None, strict: bool, allow
         _write(_emitted(compiled.circuit, form), output)
         return
     costs = stats(compiled.circuit)
-    ways = _count(compiled)
+    ways, exact = _count(compiled)
     if as_json:
-        talk.result({"plan": compiled.goals.name, "ways": ways, **asdict(costs)})
+        talk.result({"plan": compiled.goals.name, "ways": ways, "ways_exact": exact, **asdict(costs)})
         return
-    _write(_report(compiled, ways), output)
+    _write(_report(compiled, ways, exact), output)
 
 
-def _count(compiled: Compiled) -> int:
-    if exhaustible(compiled.ways):
-        return count_ways(compiled.ways)
-    return sum(1 for _ in Situations(compiled.ways).taken_ways(MOST_WAYS))
+def _count(compiled: Compiled) -> tuple[int, bool]:
+    """How many ways can be taken, and whether that is all of them or a least number."""
+    ways = compiled.ways
+    if exhaustible(ways):
+        return count_ways(ways), True
+    if not has_comparisons(ways):
+        return count_sampled_ways(ways), False
+    found = sum(1 for _ in Situations(ways).taken_ways(MOST_WAYS))
+    return found, found < MOST_WAYS
 
 
-def _report(compiled: Compiled, ways: int) -> str:
+def _report(compiled: Compiled, ways: int, exact: bool) -> str:
     costs = stats(compiled.circuit)
-    more = " or more" if ways == MOST_WAYS and not exhaustible(compiled.ways) else ""
     rows = [
-        ("ways that can be taken", f"{ways:,}{more}"),
+        ("ways that can be taken", f"{ways:,}" if exact else f"≥ {ways:,}"),
         ("inputs", f"{costs.inputs:,}"),
         ("outputs", f"{costs.outputs:,}"),
         ("registers", f"{costs.registers:,}"),
