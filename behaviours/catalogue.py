@@ -229,7 +229,7 @@ _IR = _parameters(
     ("pan_tolerance", "rad", "A fixation counts this near to where it was to look (chosen here)."),
     ("fixation_timeout", "s", "Longest wait for a fixation (chosen here)."),
     ("misses", "", "Fixations without an answer after which the search fails (chosen here)."),
-    ("turn_after", "", "Failed sweeps in a row after which the robot turns before the next (chosen here)."),
+    ("turn_after", "", "Sweeps in a row without a beacon after which the robot turns before the next (chosen here)."),
     ("turn", "rad", "How far it turns then (chosen here)."),
     ("turn_tolerance", "rad", "It has turned when it is this near (chosen here)."),
     ("steering_gain", "", "Turn rate per angle, 1/s (chosen here)."),
@@ -238,7 +238,7 @@ _IR = _parameters(
 _CROSSING = _parameters(
     CrossingSettings(),
     ("side", "", "Least number of fixations on either side of the plus-to-minus change (chosen here)."),
-    ("max_spread", "rad", "Greatest deviation of the fixations from a line (paper: the result is within 2 degrees)."),
+    ("max_error", "rad", "Greatest standard error of the angle; the paper allows the result 2 degrees (chosen here)."),
     ("max_slope_error", "", "Greatest deviation of that line's slope from -1 (chosen here)."),
 )
 

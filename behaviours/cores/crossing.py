@@ -16,11 +16,19 @@ import numpy as np
 
 @dataclass(frozen=True, slots=True)
 class CrossingSettings:
-    """side: least fixations on either side of the crossing. max_spread: of residuals [rad]. max_slope_error: ratio."""
+    """side: least fixations on either side of the crossing. max_slope_error: ratio.
+
+    max_error [rad]: of the bearing, as the standard error of a mean of so many fixations that scatter so much. It is
+    small against the two degrees that the search for the range covers.
+    """
 
     side: int = 3
-    max_spread: float = math.radians(2.0)
+    max_error: float = math.radians(0.75)
     max_slope_error: float = 0.5
+
+
+DISAGREE = "readings disagree"
+"""The reason when a beacon is there and rocks too much."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +56,6 @@ def crossing(fixations: Sequence[tuple[float, float]], settings: CrossingSetting
     if min(before, after) < settings.side:
         return Crossing(math.nan, "no plus-to-minus change")
     residuals = offsets - intercept - slope * (axes - axes.mean())
-    if float(residuals.std()) > settings.max_spread:
-        return Crossing(math.nan, "readings disagree")
+    if float(residuals.std()) > settings.max_error * math.sqrt(len(fixations)):
+        return Crossing(math.nan, DISAGREE)
     return Crossing(zero)

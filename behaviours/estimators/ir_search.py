@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from behaviours.cores.crossing import Crossing, CrossingSettings, crossing
+from behaviours.cores.crossing import DISAGREE, Crossing, CrossingSettings, crossing
 from behaviours.interface import Channels, Head, Pose, Reading, Report, wrap
 
 Phase = Literal["idle", "running", "done"]
@@ -23,8 +23,8 @@ START, CONTINUE = "start-ir-search", "continue-ir-search"
 class IrSettings:
     """Angles [rad], time [s], gain [1/s], turn rate [rad/s]; misses: fixations without an answer that end the search.
 
-    A head that reaches only to the sides cannot find what is behind: after `turn_after` failed sweeps in a row, and
-    again after as many, the robot first turns by `turn`, so that three sweeps cover the circle.
+    A head that reaches only to the sides cannot find what is behind: after `turn_after` sweeps in a row without a
+    beacon, and again after as many, the robot first turns by `turn`, so that three sweeps cover the circle.
     """
 
     sweep: float = math.radians(90.0)
@@ -126,8 +126,8 @@ class IrSearch:
 
     def _face(self, heading: float) -> None:
         """Turn away first, if sweeps this way have failed often enough."""
-        failed = self.is_no_good() and self._failures % self.settings.turn_after == 0
-        self._facing = wrap(heading + self.settings.turn) if failed else None
+        in_vain = self._failures > 0 and self._failures % self.settings.turn_after == 0
+        self._facing = wrap(heading + self.settings.turn) if in_vain and self.is_no_good() else None
 
     def _is_facing(self, reading: Reading) -> bool:
         if self._facing is None:
@@ -159,6 +159,6 @@ class IrSearch:
     def _finish(self, found: Crossing, pose: Pose) -> None:
         self.phase = "done"
         self.reason = found.reason
-        self._failures = self._failures + 1 if found.reason else 0
+        self._failures = 0 if found.reason in ("", DISAGREE) else self._failures + 1
         if not found.reason:
             self.direction = Direction(pose, wrap(pose.theta + found.bearing))

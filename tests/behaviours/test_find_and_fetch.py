@@ -188,3 +188,11 @@ def test_a_donor_behind_the_robot_is_found_after_turning(standin, bearing):
     assert wrap(robot.estimator(IrSearch).direction.bearing - bearing) == pytest.approx(0.0, abs=math.radians(2))
     assert robot.failures in (["ir"] * 2, ["ir"] * 4)
     assert math.hypot(world.pose.x, world.pose.y) < 0.01, "it turns on the spot"
+
+
+def test_a_beacon_that_rocks_too_much_is_looked_for_in_the_same_direction(standin):
+    world = lot(standin, bearing=0.0, feet=20.0, wind=math.radians(8.0))
+    robot = standin.Fetcher()
+    assert run(robot, world, lambda: len(robot.failures) == 3, 300)
+    assert robot.estimator(IrSearch).reason == "readings disagree"
+    assert world.pose.theta == 0.0

@@ -45,7 +45,7 @@ def test_offsets_that_do_not_fall_are_no_beacon():
 
 def test_readings_that_disagree_give_no_angle():
     rocked = fixations(12.3, range(-20, 44, 2))
-    rocked = [(p, o + (4 if i % 2 else -4) * DEGREE) for i, (p, o) in enumerate(rocked)]
+    rocked = [(p, o + (6 if i % 2 else -6) * DEGREE) for i, (p, o) in enumerate(rocked)]
     assert crossing(rocked, SETTINGS).reason == "readings disagree"
 
 
