@@ -32,7 +32,7 @@ class Obstacles:
     """The circles, and the latest plan among them. driver: the competence whose lack of progress counts."""
 
     def __init__(self, circles: CircleSettings, nat: NatSettings, deadlock: DeadlockSettings, driver: str) -> None:
-        self.settings = (circles, nat, deadlock)
+        self._circles, self._nat, self._deadlock = circles, nat, deadlock
         self.memory = Circles()
         self.plan: NatPlan | None = None
         self._spins: Memory = {}
@@ -44,7 +44,7 @@ class Obstacles:
         sonar = reading.sonar
         fresh = sonar is not None and sonar.fresh
         if sonar is not None and fresh:
-            self.memory = perceive(self.memory, self._echoes(sonar, pose), self.settings[0])
+            self.memory = perceive(self.memory, self._echoes(sonar, pose), self._circles)
         goal = as_goal(channels)
         if goal is None:
             self._forget_plan()
@@ -53,8 +53,7 @@ class Obstacles:
         self._mind_progress(reading, self._driver in reports and goal is not None)
 
     def _echoes(self, ring: Ranges, pose: Pose) -> list[tuple[float, Vec2]]:
-        settings = self.settings[0]
-        return echoes_of(ring, pose, settings.half_cone, settings.neighbours_near)
+        return echoes_of(ring, pose, self._circles.half_cone, self._circles.neighbours_near)
 
     def plan_to(self, pose: Pose, goal: Pose, now: float) -> NatPlan:
         """The plan from the robot to the goal at stamp now [s]: the latest one if that is its goal."""
@@ -63,9 +62,9 @@ class Obstacles:
         return self._make(pose, goal, now)
 
     def _make(self, pose: Pose, goal: Pose, now: float) -> NatPlan:
-        same = self.plan is not None and distance(self.plan.goal, goal) <= self.settings[2].new_goal
+        same = self.plan is not None and distance(self.plan.goal, goal) <= self._deadlock.new_goal
         before = self.plan.grouping if self.plan is not None else {}
-        return make_plan(self.memory.circles, pose, goal, before, self._spins if same else {}, now, self.settings[1])
+        return make_plan(self.memory.circles, pose, goal, before, self._spins if same else {}, now, self._nat)
 
     def _replan(self, pose: Pose, goal: Pose, now: float) -> None:
         self.plan = self._make(pose, goal, now)
@@ -76,19 +75,18 @@ class Obstacles:
         self._spins = {}
 
     def _mind_progress(self, reading: Reading, driving: bool) -> None:
-        settings = self.settings[2]
         pose = reading.odometry.pose
         if not driving:
             self._since = None
-        elif self._since is None or distance(self._since[1], pose) > settings.progress:
+        elif self._since is None or distance(self._since[1], pose) > self._deadlock.progress:
             self._since = (reading.stamp, pose)
-        elif reading.stamp - self._since[0] > settings.patience:
+        elif reading.stamp - self._since[0] > self._deadlock.patience:
             self._since = (reading.stamp, pose)
             self._turn_about(reading)
 
     def _turn_about(self, reading: Reading) -> None:
-        group = contradicted(self.plan, self.settings[1]) if self.plan is not None else None
+        group = contradicted(self.plan, self._nat) if self.plan is not None else None
         if self.plan is not None and group is not None:
-            locked = (opposite(group.spin), reading.stamp + self.settings[2].lock)
+            locked = (opposite(group.spin), reading.stamp + self._deadlock.lock)
             self._spins = {**self._spins, **dict.fromkeys(group.idents, locked)}
             self._replan(reading.odometry.pose, self.plan.goal, reading.stamp)
