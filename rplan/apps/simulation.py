@@ -23,8 +23,8 @@ from sim.judge import Verdict
 from sim.recording import Recorder
 from sim.scenarios.scenario import Scenario, loads
 
-OPEN = "(nothing)"
-"""Shown for a command channel that a tick leaves without a competence."""
+OPEN = "nothing"
+"""Shown for a channel that a tick leaves open."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,9 +45,10 @@ class Share:
 
 @dataclass(frozen=True, slots=True)
 class Switch:
-    """At `time` [s] `before` gave way to `after`, since `because`; rules: what the way then served."""
+    """At `time` [s] `before` gave way to `after` in a channel, since `because`; rules: what the way then served."""
 
     time: float
+    channel: str
     before: str
     after: str
     because: str
@@ -88,7 +89,7 @@ class _Watch:
     brain: PlanBrain
     recorder: Recorder | None
     progress: Callable[[float, str], None] | None
-    channels: tuple[str, ...]
+    commands: tuple[str, ...]
     shares: dict[str, Share] = field(default_factory=dict)
     switches: list[Switch] = field(default_factory=list)
     holes: int = 0
@@ -102,14 +103,8 @@ class _Watch:
         if self.recorder is not None:
             self.recorder.tick(episode.time, episode.snapshot(), episode.note)
         if self.progress is not None and self.ticks % 50 == 0:
-            doing = self._doing(self.last)[0] if self.channels and self.last else ""
-            self.progress(episode.time, f"{episode.judge.stage} {doing}")
-
-    def _doing(self, decision: Decision | None) -> list[str]:
-        if decision is None:
-            return [OPEN] * len(self.channels)
-        terms = [decision.sent[channel] for channel in self.channels]
-        return [OPEN if term is None else term.text for term in terms]
+            doing = ", ".join(_sent(self.last, channel) for channel in self.commands)
+            self.progress(episode.time, f"{episode.judge.stage}: {doing}")
 
     def _count(self, time: float) -> None:
         tick = self.brain.tick
@@ -118,20 +113,24 @@ class _Watch:
         self.ticks += 1
         self.holes += decision.hole
         self.faults += [f"{time:.1f} s: ({fault.competence}): {fault.message}" for fault in tick.faults]
-        before = self._doing(self.last)
-        for was, now in zip(before, self._doing(decision), strict=True):
-            share = self.shares.setdefault(now, Share())
-            share.ticks += 1
-            if was != now:
-                share.switches += 1
-                way = self.brain.trace.way(decision)
-                because = self._because(decision, way) if self.last is not None else "it is the first tick"
-                self.switches.append(Switch(time, was, now, because, way.rules))
+        for channel in decision.sent:
+            was, now = _sent(self.last, channel), _sent(decision, channel)
+            if was != now and (self.last is not None or channel in self.commands):
+                self._switch(time, channel, was, now, decision)
+            if channel in self.commands:
+                share = self.shares.setdefault(now, Share())
+                share.ticks += 1
+                share.switches += was != now
         self.last = decision
+
+    def _switch(self, time: float, channel: str, was: str, now: str, decision: Decision) -> None:
+        way = self.brain.trace.way(decision)
+        self.switches.append(Switch(time, channel, was, now, self._because(decision, way), way.rules))
 
     def _because(self, decision: Decision, way: TakenWay) -> str:
         """The conditions that changed with the switch and that one of the two ways asks."""
-        assert self.last is not None
+        if self.last is None:
+            return "it is the first tick"
         before = self.brain.trace.way(self.last)
         asked = [branch.condition for branch in (*way.branches, *before.branches)]
         atoms = self.brain.compiled.ways.atoms
@@ -141,6 +140,11 @@ class _Watch:
             if was != now and any(atom.text in condition for condition in asked)
         ]
         return "; ".join(changed) or "what was kept changed"
+
+
+def _sent(decision: Decision | None, channel: str) -> str:
+    term = None if decision is None else decision.sent[channel]
+    return OPEN if term is None else term.text
 
 
 def simulate(
@@ -158,9 +162,9 @@ def simulate(
     """
     brain = PlanBrain(compiled)
     episode = Episode(world.scenario, seed)
-    channels = tuple(o.name for o in compiled.goals.outputs if o.type is not None and o.type.name == "command")
+    commands = tuple(o.name for o in compiled.goals.outputs if o.type is not None and o.type.name == "command")
     with _recorder(record, compiled, world, episode) as recorder:
-        watch = _Watch(brain, recorder, progress, channels)
+        watch = _Watch(brain, recorder, progress, commands)
         begin = perf_counter()
         try:
             verdict = episode.run(brain, until, watch)

@@ -7,6 +7,7 @@ import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict
+from importlib.util import find_spec
 from pathlib import Path
 
 import click
@@ -81,6 +82,8 @@ def _check_targets(*targets: Path | None) -> None:
     for target in targets:
         if target is not None and not target.resolve().parent.is_dir():
             raise InputError(f"there is no folder {target.parent} to write {target.name} into")
+    if targets[-1] is not None and find_spec("matplotlib") is None:
+        raise InputError("--plot needs matplotlib: pip install 'rplan[plot]'")
 
 
 @contextmanager
@@ -138,7 +141,7 @@ def _draw(recording: Path, replay: Path | None, plot: Path | None, verdict: str)
         from rplan.apps.drawing.plot import draw
 
         try:
-            draw(read(recording), plot)
+            draw(read(recording), plot, verdict)
         except OSError as error:
             unreadable(plot, error)
 
@@ -214,10 +217,11 @@ def _share_table(run: Run) -> Table:
 def _switch_table(run: Run) -> Table:
     table = Table(box=None, title="\nSwitches, and why", title_justify="left", title_style="bold")
     table.add_column("at", justify="right", no_wrap=True)
+    table.add_column("channel")
     table.add_column("to")
     table.add_column("because")
     for switch in run.switches:
-        table.add_row(f"{switch.time:.1f} s", switch.after, switch.because)
+        table.add_row(f"{switch.time:.1f} s", switch.channel, switch.after, switch.because)
     return table
 
 

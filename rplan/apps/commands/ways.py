@@ -11,9 +11,9 @@ from rplan.apps.files import plan_file
 from rplan.driver import Compiled
 from rplan.runtime.trace import way_json
 from rplan.ways.count import PaperCount, count
-from rplan.ways.coverage import Situations, Witness, atom_value, describe
+from rplan.ways.coverage import Situations, Witness, atom_value
 from rplan.ways.exhaust import count_situations, exhaustible
-from rplan.ways.way import TakenWay, taken_way
+from rplan.ways.way import Branch, TakenWay, taken_way
 
 LIMIT = 200
 
@@ -60,12 +60,12 @@ def _list(compiled: Compiled, limit: int, as_json: bool) -> None:
         ways = [dict(way_json(way)) | {"when": dict(witness)} for witness, way in found]
         talk.result({"plan": compiled.goals.name, "ways": ways, "cut_short": len(found) == limit})
         return
-    for number, (witness, way) in enumerate(found, start=1):
+    for number, (_, way) in enumerate(found, start=1):
         click.echo(f"{number:>3}  {_acts(way)}")
         for given in way.given_up:
             click.echo(f"     gives up {given.member}: {given.because}")
         click.echo(f"     by {', '.join(way.rules) or 'the top goal'}")
-        click.echo(f"     when {describe(witness, compiled.ways)}")
+        click.echo(f"     when {_when(way)}")
     more = f"; there may be more (--limit {limit})" if len(found) == limit else ""
     click.echo(f"{len(found)} ways can be taken{more}")
 
@@ -82,6 +82,18 @@ def _taken(compiled: Compiled, limit: int) -> Iterator[tuple[Witness, TakenWay]]
 
 def _rank(way: TakenWay) -> tuple[list[tuple[int, int]], int]:
     return [(act.span.line, act.span.column) for act in way.acts], len(way.given_up)
+
+
+def _when(way: TakenWay) -> str:
+    """The conditions on the way, each once."""
+    return " ".join(dict.fromkeys(map(_literal, way.branches))) or "always"
+
+
+def _literal(branch: Branch) -> str:
+    if branch.value:
+        return branch.condition
+    negated = branch.condition.startswith("(not ")
+    return branch.condition[5:-1] if negated else f"(not {branch.condition})"
 
 
 def _acts(way: TakenWay) -> str:
