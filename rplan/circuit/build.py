@@ -7,7 +7,7 @@ Leaves alone: what can be left out; see passes/.
 from __future__ import annotations
 
 from rplan.circuit.cell import Cell, Op
-from rplan.circuit.circuit import Circuit, Port
+from rplan.circuit.circuit import Circuit, Port, Register
 from rplan.goals.condition import Atom, Percept
 from rplan.goals.goal import Do
 from rplan.lang.source import Span
@@ -32,7 +32,7 @@ def build(ways: Ways) -> Circuit:
     return Circuit(
         name=ways.goals.name,
         inputs=tuple(Port(atom.text, (_place(atom),)) for atom in ways.atoms),
-        registers=(),
+        registers=tuple(Register(one.name, one.initial, one.next) for one in ways.registers),
         cells=tuple(map(_cell, ways.guards.nodes)),
         outputs=tuple(outputs),
     )
@@ -49,6 +49,8 @@ def _cell(node: Node) -> Cell:
             return Cell(Op.CONSTANT, (), a)
         case "atom":
             return Cell(Op.INPUT, (), a)
+        case "register":
+            return Cell(Op.REGISTER, (), a)
         case "not":
             return Cell(Op.NOT, (a,))
         case "and":

@@ -6,23 +6,25 @@ Leaves alone: what a percept is in the world; an atom is known by its canonical 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from rplan.lang.plan import Comparator, Type
+from rplan.lang.plan import Comparator, Past, Type
 from rplan.lang.source import Span
 from rplan.lang.units import canonical_number
 
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """A value: a call of the run-time world, a number, a truth value or a bare symbol; type None if nothing tells it.
+    """A value: a call of the run-time world, a number, a truth value, a bare symbol, or arithmetic over numbers.
 
-    value: the number (SI) or truth value of a literal, else None.
+    name: of the function or symbol, or the operator. value: the number (SI) or truth value of a literal, else None.
+    type: None where nothing tells it.
     """
 
-    kind: Literal["call", "number", "truth", "symbol"]
+    kind: Literal["call", "number", "truth", "symbol", "arithmetic"]
     name: str
     arguments: tuple[Term, ...]
     value: float | bool | None
@@ -40,7 +42,7 @@ class Term:
                 return "true" if self.value else "false"
             case "symbol":
                 return self.name
-            case "call":
+            case "call" | "arithmetic":
                 return f"({' '.join((self.name, *(argument.text for argument in self.arguments)))})"
 
 
@@ -85,19 +87,40 @@ class AnyOf:
     conditions: tuple[Condition, ...]
 
 
-Condition = Constant | Percept | Comparison | Not | AllOf | AnyOf
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """A condition that asks the past (L9); text is canonical, and equal text is one register.
+
+    conditions as in rplan.lang.plan.Memory. ticks: of `held-for` and `within`, the count of `at-least`, else 0.
+    """
+
+    text: str
+    form: Past
+    conditions: tuple[Condition, ...]
+    initial: bool
+    ticks: int
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """A named condition inside its own definition, behind a `delay` (L10); see `Goals.definitions`."""
+
+    name: str
+
+
+Condition = Constant | Percept | Comparison | Not | AllOf | AnyOf | Memory | Named
 
 
 def atoms(condition: Condition) -> Iterator[Atom]:
     """Every atom in it, in textual order, with repetitions."""
     match condition:
-        case Constant():
+        case Constant() | Named():
             return
         case Percept() | Comparison():
             yield condition
         case Not(inner):
             yield from atoms(inner)
-        case AllOf(parts) | AnyOf(parts):
+        case AllOf(parts) | AnyOf(parts) | Memory(conditions=parts):
             for part in parts:
                 yield from atoms(part)
 
@@ -108,7 +131,51 @@ def percept_terms(atom: Atom) -> Iterator[Term]:
         case Percept(term=term):
             yield term
         case Comparison(left=left, right=right):
-            yield from (term for term in (left, right) if term.kind == "call")
+            yield from _calls(left)
+            yield from _calls(right)
+
+
+def _calls(term: Term) -> Iterator[Term]:
+    match term.kind:
+        case "call":
+            yield term
+        case "arithmetic":
+            for operand in term.arguments:
+                yield from _calls(operand)
+
+
+def quantity(term: Term, value_of: Callable[[str], float]) -> float:
+    """The number [SI] that a term is; value_of: canonical text of a percept -> its number."""
+    match term.kind:
+        case "call":
+            return value_of(term.text)
+        case "arithmetic":
+            return operate(term.name, [quantity(operand, value_of) for operand in term.arguments])
+        case _:
+            assert isinstance(term.value, float)
+            return term.value
+
+
+def operate(operator: str, numbers: Sequence[float]) -> float:
+    """The one meaning of an operator."""
+    first, *others = numbers
+    match operator:
+        case "+":
+            return sum(others, first)
+        case "-":
+            return first - sum(others) if others else -first
+        case "*":
+            return math.prod(others, start=first)
+        case "/":
+            return first / others[0]
+        case "min":
+            return min(numbers)
+        case "max":
+            return max(numbers)
+        case "abs":
+            return abs(first)
+        case _:
+            raise ValueError(operator)
 
 
 def compare(operator: Comparator, left: float, right: float) -> bool:
@@ -133,8 +200,10 @@ def print_condition(condition: Condition) -> str:
     match condition:
         case Constant(value):
             return "true" if value else "false"
-        case Percept(text) | Comparison(text):
+        case Percept(text) | Comparison(text) | Memory(text):
             return text
+        case Named(name):
+            return f"({name})"
         case Not(inner):
             return f"(not {print_condition(inner)})"
         case AllOf(parts):

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 from rplan.goals import goal as g
 from rplan.goals.papercuts import check_channels
-from rplan.goals.resolve import resolve_condition, resolve_outputs, resolve_settings, resolve_value
+from rplan.goals.resolve import resolve_condition, resolve_definitions, resolve_outputs, resolve_settings, resolve_value
 from rplan.goals.scope import Findings, Scope, report_unused, scope_of
 from rplan.goals.signature import Libraries
 from rplan.lang import plan as p
@@ -36,6 +36,7 @@ def expand(plan: p.Plan, libraries: Libraries, *, strict: bool = False) -> tuple
     top = _top(plan, reducer, findings)
     for kind, name in [*scope.rules]:
         reducer.rule(kind, name)
+    definitions = resolve_definitions(scope)
     outputs = resolve_outputs(plan, scope, top)
     report_unused(plan, scope)
     if top is not None:
@@ -52,6 +53,7 @@ def expand(plan: p.Plan, libraries: Libraries, *, strict: bool = False) -> tuple
         libraries=settings,
         functions=dict(scope.functions),
         span=plan.span,
+        definitions=definitions,
     )
     return goals, tuple(findings.list)
 

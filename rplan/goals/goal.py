@@ -7,7 +7,7 @@ Leaves alone: which way is taken; see rplan/ways.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from rplan.goals.condition import Condition, Term, percept_terms, print_condition
 from rplan.goals.condition import atoms as atoms_of
@@ -106,7 +106,10 @@ class BoundLibrary:
 
 @dataclass(frozen=True, slots=True)
 class Goals:
-    """A checked plan. outputs in the order in which channels are filled (L25); functions: every name that is known."""
+    """A checked plan. outputs in the order in which channels are filled (L25); functions: every name that is known.
+
+    definitions: what the named conditions stand for that ask their own past.
+    """
 
     name: str
     doc: str
@@ -117,11 +120,12 @@ class Goals:
     libraries: tuple[BoundLibrary, ...]
     functions: Mapping[str, FunctionSignature]
     span: Span
+    definitions: Mapping[str, Condition] = field(default_factory=dict)
 
     def percepts(self) -> tuple[Term, ...]:
         """The functions that stand in conditions, once each, in textual order of the reduced goal."""
         seen: dict[str, Term] = {}
-        for condition in conditions(self.top):
+        for condition in (*conditions(self.top), *self.definitions.values()):
             for atom in atoms_of(condition):
                 for term in percept_terms(atom):
                     seen.setdefault(term.text, term)

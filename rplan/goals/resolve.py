@@ -6,10 +6,13 @@ goes to the scope's findings and a harmless stand-in comes back, so that one run
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from fractions import Fraction
 
 from rplan.goals import condition as c
 from rplan.goals import goal as g
+from rplan.goals.dimension import product, quotient
 from rplan.goals.scope import Scope
 from rplan.goals.signature import BOOL, COMPETENCE_FAILED, ParameterSignature
 from rplan.lang import plan as p
@@ -18,7 +21,8 @@ from rplan.lang.plan import Type
 from rplan.lang.source import Span
 from rplan.lang.suggest import close
 
-NUMBER = Type("number")
+_DELAY = "(delay)"
+"""Stands among the names on the way to a condition where a `delay` was passed."""
 
 
 def resolve_condition(condition: p.Condition, scope: Scope, inside: tuple[str, ...] = ()) -> c.Condition:
@@ -34,6 +38,8 @@ def resolve_condition(condition: p.Condition, scope: Scope, inside: tuple[str, .
             return c.AnyOf(tuple(resolve_condition(part, scope, inside) for part in parts))
         case p.Compare():
             return _comparison(condition, scope)
+        case p.Memory():
+            return _memory(condition, scope, inside)
         case p.Call(name, arguments, span) if name in scope.conditions:
             return _named(name, arguments, span, scope, inside)
         case p.Call():
@@ -51,6 +57,9 @@ def _named(
             "error", "wrong-arity", f"the condition `{name}` takes no arguments", span,
             related=[Related("defined here", definition.span)],
         )  # fmt: skip
+    if name in inside and _DELAY in inside[inside.index(name) :]:
+        scope.recursive[name] = None
+        return c.Named(name)
     if name in inside:
         _circle(inside[inside.index(name) :], span, scope)
         return c.Constant(False)
@@ -68,6 +77,31 @@ def _circle(names: tuple[str, ...], span: Span, scope: Scope) -> None:
         )  # fmt: skip
 
 
+def _memory(memory: p.Memory, scope: Scope, inside: tuple[str, ...]) -> c.Memory:
+    """`delay` breaks circles: what is inside it is of the tick before (L10)."""
+    here = (*inside, _DELAY) if memory.form == "delay" else inside
+    conditions = tuple(resolve_condition(part, scope, here) for part in memory.conditions)
+    head: list[str] = [memory.form]
+    ticks = memory.count
+    match memory.form:
+        case "delay":
+            head.append("true" if memory.initial else "false")
+        case "held-for" | "within" if memory.duration is not None:
+            head.append(_literal(memory.duration).text)
+            ticks = ticks_of(memory.duration.value, scope.period)
+        case "at-least":
+            head.append(str(memory.count))
+    parts = [*head, *map(c.print_condition, conditions)]
+    if memory.form == "at-least" and len(conditions) == 2:
+        parts.insert(-1, ":reset")
+    return c.Memory(f"({' '.join(parts)})", memory.form, conditions, memory.initial, ticks)
+
+
+def ticks_of(duration: float, period: float) -> int:
+    """How many ticks a time [s] takes, rounded up; exact on the decimals of the text: 70 ms at 10 ms is 7."""
+    return math.ceil(Fraction(repr(duration)) / Fraction(repr(period)))
+
+
 def _comparison(compare: p.Compare, scope: Scope) -> c.Comparison:
     left = _number(compare.left, scope)
     right = _number(compare.right, scope)
@@ -78,19 +112,41 @@ def _comparison(compare: p.Compare, scope: Scope) -> c.Comparison:
     return c.Comparison(f"({compare.operator} {left.text} {right.text})", compare.operator, left, right)
 
 
-def _number(expression: p.Number | p.Call, scope: Scope) -> c.Term:
+def _number(expression: p.Quantity, scope: Scope) -> c.Term:
     if isinstance(expression, p.Number):
         return _literal(expression)
+    if isinstance(expression, p.Arithmetic):
+        return _arithmetic(expression, scope)
     term = _call(expression, scope, None, "number")
     if term.type is not None and term.type.name != "number":
         scope.findings.add(
-            "error", "type-mismatch", f"`{term.text}` is of type {term.type}; a number is compared", expression.span
+            "error", "type-mismatch", f"`{term.text}` is of type {term.type}; a number is wanted", expression.span
         )
     return term
 
 
 def _unit(term: c.Term) -> str:
     return term.type.unit if term.type is not None else ""
+
+
+def _arithmetic(arithmetic: p.Arithmetic, scope: Scope) -> c.Term:
+    operands = [_number(operand, scope) for operand in arithmetic.operands]
+    match arithmetic.operator:
+        case "*" | "/":
+            if arithmetic.operator == "/" and not operands[1].value:
+                scope.findings.add(
+                    "error", "bad-divisor", "a divisor is a number other than zero, so that no tick divides by nothing",
+                    operands[1].span, hint="multiply the other side instead",
+                )  # fmt: skip
+            unit = _unit(operands[0])
+            for operand in operands[1:]:
+                unit = (product if arithmetic.operator == "*" else quotient)(unit, _unit(operand))
+        case _:
+            for number in range(1, len(operands)):
+                operands[0], operands[number] = _same_unit(operands[0], operands[number], arithmetic.span, scope)
+            unit = _unit(operands[0])
+    kind = Type("number", unit)
+    return c.Term("arithmetic", arithmetic.operator, tuple(operands), None, kind, arithmetic.span)
 
 
 def _same_unit(left: c.Term, right: c.Term, span: Span, scope: Scope) -> tuple[c.Term, c.Term]:
@@ -114,6 +170,15 @@ def _same_unit(left: c.Term, right: c.Term, span: Span, scope: Scope) -> tuple[c
 
 def _literal(number: p.Number) -> c.Term:
     return c.Term("number", "", (), number.value, Type("number", number.unit), number.span)
+
+
+def resolve_definitions(scope: Scope) -> dict[str, c.Condition]:
+    """What the named conditions stand for that were found to ask their own past."""
+    found: dict[str, c.Condition] = {}
+    while missing := [name for name in scope.recursive if name not in found]:
+        for name in missing:
+            found[name] = resolve_condition(scope.conditions[name].condition, scope, (name,))
+    return found
 
 
 def resolve_value(value: p.Expression, wanted: Type | None, scope: Scope) -> c.Term:

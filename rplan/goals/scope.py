@@ -55,6 +55,8 @@ class Scope:
     libraries: dict[str, LibrarySignature]
     findings: Findings
     strict: bool
+    period: float
+    recursive: dict[str, None] = field(default_factory=dict)
     used: dict[tuple[str, str], None] = field(default_factory=dict)
     unknown: dict[tuple[str, str], None] = field(default_factory=dict)
     taken: dict[str, tuple[Type, Span]] = field(default_factory=dict)
@@ -104,7 +106,7 @@ class Scope:
 
 def scope_of(plan: Plan, libraries: Libraries, strict: bool, findings: Findings) -> Scope:
     """The tables of a plan; unknown libraries, and names that two of them offer, are reported."""
-    scope = Scope({COMPETENCE_FAILED.name: COMPETENCE_FAILED}, {}, {}, {}, {}, findings, strict)
+    scope = Scope({COMPETENCE_FAILED.name: COMPETENCE_FAILED}, {}, {}, {}, {}, findings, strict, plan.header.period)
     for use in plan.uses:
         if use.library not in libraries:
             meant = close(use.library, list(libraries))

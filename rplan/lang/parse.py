@@ -1,4 +1,4 @@
-"""Forms to a `Plan` (the table of the top level, L8 without arithmetic, L12-L17 without parameters).
+"""Forms to a `Plan` (the table of the top level, L8, L9, L12-L17 without parameters).
 
 Takes: forms and the source they come from. Gives: a `Plan` and warnings, or every error at once. Leaves alone: whether
 names exist and types fit.
@@ -23,6 +23,7 @@ from rplan.lang.plan import (
     And,
     AnyOf,
     Anything,
+    Arithmetic,
     Call,
     Comparator,
     Compare,
@@ -33,13 +34,17 @@ from rplan.lang.plan import (
     Goal,
     Header,
     If,
+    Memory,
     NamedCondition,
     Not,
     Number,
+    Operator,
     Or,
     OutputDeclaration,
+    Past,
     Plan,
     PrioAnd,
+    Quantity,
     Rule,
     Setting,
     Subgoal,
@@ -67,15 +72,17 @@ from rplan.lang.units import SI_UNITS, UNITS, dimension
 
 GOAL_FORMS = ("do", "if", "when", "cond", "and", "or", "prio-and", "ach", "maint")
 COMPARATORS: tuple[Comparator, ...] = ("<", "<=", ">", ">=", "=", "/=")
-CONDITION_FORMS = ("not", "and", "or", *COMPARATORS)
+MEMORY_FORMS: tuple[Past, ...] = (
+    "delay", "once", "historically", "since", "latch", "rose", "fell", "held-for", "within", "at-least",
+)  # fmt: skip
+OPERATORS: tuple[Operator, ...] = ("+", "-", "*", "/", "min", "max", "abs")
+CONDITION_FORMS = ("not", "and", "or", *COMPARATORS, *MEMORY_FORMS)
 TYPES = ("bool", "number", "pose", "command", "symbol")
 DEFAULT_PERIOD = 0.1
 """The length of a tick [s] where the plan tells none."""
 
-_MEMORY = ("delay", "once", "historically", "since", "latch", "rose", "fell", "held-for", "within", "at-least")
-_ARITHMETIC = ("+", "-", "*", "/", "min", "max", "abs")
 _TRUTHS = ("true", "false")
-_RESERVED = (*_TRUTHS, "anything", "else", *TOP_FORMS, *GOAL_FORMS, *CONDITION_FORMS, *_MEMORY, *_ARITHMETIC)
+_RESERVED = (*_TRUTHS, "anything", "else", *TOP_FORMS, *GOAL_FORMS, *CONDITION_FORMS, *OPERATORS)
 
 _TAKES = {
     "plan": "a name",
@@ -93,6 +100,16 @@ _TAKES = {
     "ach": "the name of a goal",
     "maint": "the name of a goal",
     "not": "a condition",
+    "delay": "a first value (`true` or `false`) and a condition",
+    "once": "a condition",
+    "historically": "a condition",
+    "since": "a condition, and the condition since which it holds",
+    "latch": "a condition that sets and one that resets",
+    "rose": "a condition",
+    "fell": "a condition",
+    "held-for": "a time and a condition",
+    "within": "a time and a condition",
+    "at-least": "a number of ticks and a condition, and perhaps `:reset CONDITION`",
 }
 _HINTS = {
     ("if", 2): "use `when` for an if without else",
@@ -241,9 +258,7 @@ class _Parser:
             self.error("bad-value", "`:period` is a time longer than nothing", form.span)
         else:
             if not form.unit:
-                message = f"`{form.text}` has no unit; it is taken as seconds"
-                hint = f"write `{form.text}s`"
-                self.found.append(Diagnostic("bare-number", "warning", message, form.span, hint=hint))
+                self._bare_seconds(form)
             return form.value
         return DEFAULT_PERIOD
 
@@ -533,6 +548,9 @@ class _Parser:
         for comparator in COMPARATORS:
             if head == comparator:
                 return self._compare(form, comparator)
+        for form_of_memory in MEMORY_FORMS:
+            if head == form_of_memory:
+                return self._memory(form, form_of_memory)
         if head == "not":
             return (
                 Not(self.condition(rest[0]), form.span)
@@ -544,6 +562,61 @@ class _Parser:
         conditions = tuple(self.condition(one) for one in rest)
         return AllOf(conditions, form.span) if head == "and" else AnyOf(conditions, form.span)
 
+    def _memory(self, form: ListForm, head: Past) -> Condition:
+        rest, options = self._split(form.items[1:], ("reset",) if head == "at-least" else ())
+        wanted = 1 if head in ("once", "historically", "rose", "fell") else 2
+        if not self._count(head, form, rest, wanted):
+            return Truth(False, form.span)
+        match head:
+            case "delay":
+                return Memory(head, (self.condition(rest[1]),), form.span, initial=self._truth(rest[0]))
+            case "held-for" | "within":
+                return Memory(head, (self.condition(rest[1]),), form.span, duration=self._duration(rest[0], head))
+            case "at-least":
+                reset = options.get("reset")
+                conditions = [self.condition(rest[1])]
+                conditions += [self.condition(reset.value)] if reset and reset.value else []
+                return Memory(head, tuple(conditions), form.span, count=self._ticks(rest[0]))
+            case _:
+                return Memory(head, tuple(self.condition(one) for one in rest), form.span)
+
+    def _truth(self, form: Form) -> bool:
+        match form:
+            case Symbol(name="true" | "false" as name):
+                return name == "true"
+            case _:
+                self._unexpected(form, "`true` or `false`", "bad-value")
+        return False
+
+    def _duration(self, form: Form, head: str) -> Number:
+        """A time longer than nothing; a bare number is seconds, with a warning."""
+        if not isinstance(form, Numeral):
+            self._unexpected(form, "a time such as `2s`", "bad-value")
+        elif form.unit not in ("s", ""):
+            message = f"`{head}` wants a time, `{form.text}` is a {dimension(form.unit)}"
+            self.error("unit-mismatch", message, form.span, "times have the units `s`, `ms` or `min`")
+        elif form.value <= 0:
+            self.error("bad-value", f"`{head}` wants a time longer than nothing", form.span)
+        else:
+            if not form.unit:
+                self._bare_seconds(form)
+            return Number(form.value, "s", form.span)
+        return Number(1.0, "s", form.span)
+
+    def _bare_seconds(self, form: Numeral) -> None:
+        message = f"`{form.text}` has no unit; it is taken as seconds"
+        self.found.append(Diagnostic("bare-number", "warning", message, form.span, hint=f"write `{form.text}s`"))
+
+    def _ticks(self, form: Form) -> int:
+        if isinstance(form, Numeral) and not form.unit and form.value >= 1 and form.value == int(form.value):
+            return int(form.value)
+        if isinstance(form, Numeral):
+            message = f"`at-least` counts ticks: a whole number from 1 up, not `{form.text}`"
+            self.error("bad-value", message, form.span)
+        else:
+            self._unexpected(form, "a number of ticks", "bad-value")
+        return 1
+
     def _compare(self, form: ListForm, comparator: Comparator) -> Condition:
         rest = form.items[1:]
         if len(rest) != 2:
@@ -551,8 +624,10 @@ class _Parser:
             return Truth(False, form.span)
         return Compare(comparator, self._operand(rest[0]), self._operand(rest[1]), form.span)
 
-    def _operand(self, form: Form) -> Number | Call:
+    def _operand(self, form: Form) -> Quantity:
         match form:
+            case ListForm(items=(Symbol(name=name), *rest)) if name in OPERATORS:
+                return self._arithmetic(form, name, rest)
             case Symbol(name="true" | "false"):
                 hint = "a condition is itself true or false; `(not C)` turns it round"
                 self._unexpected(form, "a number", "not-a-number", hint)
@@ -562,6 +637,18 @@ class _Parser:
                     return value
             case _:
                 self._unexpected(form, "a number", "not-a-number")
+        return Number(0.0, "", form.span)
+
+    def _arithmetic(self, form: ListForm, name: str, rest: Sequence[Form]) -> Quantity:
+        operator = next(one for one in OPERATORS if one == name)
+        if operator == "abs" and len(rest) != 1:
+            self._wrong_parts("`abs` takes one number", form, rest)
+        elif operator == "/" and len(rest) != 2:
+            self._wrong_parts("`/` takes a number and a divisor", form, rest)
+        elif not rest:
+            self._wrong_parts(f"`{operator}` takes one or more numbers", form, rest)
+        else:
+            return Arithmetic(operator, tuple(self._operand(one) for one in rest), form.span)
         return Number(0.0, "", form.span)
 
     def expression(self, form: Form) -> Expression:
@@ -584,11 +671,9 @@ class _Parser:
         if name not in _RESERVED:
             arguments = form.items[1:] if isinstance(form, ListForm) else ()
             return Call(name, tuple(self.expression(one) for one in arguments), form.span)
-        known = _known(wanted, CONDITION_FORMS) if wanted == "condition" else _VALUES_HINT
-        if name in _MEMORY:
-            self.error("unknown-form", f"`{name}`: conditions with memory are not supported", form.span, known)
-        elif name in _ARITHMETIC:
-            self.error("unknown-form", f"`{name}`: arithmetic is not supported", form.span, known)
+        if name in OPERATORS:
+            hint = "compare numbers with `<`, `<=`, `>`, `>=`, `=` or `/=`"
+            self.error("misplaced-form", f"`{name}` makes a number; here a {wanted} is expected", form.span, hint)
         elif name in _TRUTHS:
             self.error("misplaced-form", f"`{name}` takes no parentheses", form.span, f"write `{name}`")
         else:
@@ -709,7 +794,6 @@ class _Branch:
     goal: Goal
 
 
-_VALUES_HINT = "a value is a number, `true`, `false` or a call `(NAME ...)`"
 _TYPES_HINT = "the types: bool, (number UNIT), pose, command, symbol"
 
 

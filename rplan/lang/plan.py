@@ -59,18 +59,46 @@ class AnyOf:
 
 
 Comparator = Literal["<", "<=", ">", ">=", "=", "/="]
+Operator = Literal["+", "-", "*", "/", "min", "max", "abs"]
+Past = Literal["delay", "once", "historically", "since", "latch", "rose", "fell", "held-for", "within", "at-least"]
+
+
+@dataclass(frozen=True, slots=True)
+class Arithmetic:
+    """Numbers put together; `-` of one number is its negative."""
+
+    operator: Operator
+    operands: tuple[Quantity, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """A condition that asks the past (L9).
+
+    conditions in the order of the text: of `latch` SET and RESET, of `since` C and D, of `at-least` C and perhaps R.
+    initial: of `delay`; duration: of `held-for` and `within`; count: of `at-least`.
+    """
+
+    form: Past
+    conditions: tuple[Condition, ...]
+    span: Span
+    initial: bool = False
+    duration: Number | None = None
+    count: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class Compare:
     operator: Comparator
-    left: Number | Call
-    right: Number | Call
+    left: Quantity
+    right: Quantity
     span: Span
 
 
+Quantity = Number | Call | Arithmetic
 Expression = Number | Truth | Call
-Condition = Truth | Call | Not | AllOf | AnyOf | Compare
+Condition = Truth | Call | Not | AllOf | AnyOf | Compare | Memory
 
 # --- goals ----------------------------------------------------------------------------------------
 

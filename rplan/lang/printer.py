@@ -14,6 +14,7 @@ from rplan.lang.plan import (
     And,
     AnyOf,
     Anything,
+    Arithmetic,
     Call,
     Compare,
     Condition,
@@ -23,6 +24,7 @@ from rplan.lang.plan import (
     Goal,
     Header,
     If,
+    Memory,
     NamedCondition,
     Not,
     Number,
@@ -30,6 +32,7 @@ from rplan.lang.plan import (
     OutputDeclaration,
     Plan,
     PrioAnd,
+    Quantity,
     Rule,
     Setting,
     Subgoal,
@@ -48,7 +51,7 @@ Sexp = str | tuple["Sexp", ...]
 """An S-expression yet to be laid out."""
 
 
-def canonical(expression: Expression | Condition) -> str:
+def canonical(expression: Expression | Condition | Quantity) -> str:
     """The canonical text (L21): `(name arg)` for a call, also without arguments; `true`; `7.62m`."""
     with deep_recursion():
         return _flat(_condition(expression))
@@ -80,7 +83,7 @@ def quoted(text: str) -> str:
 # --- syntax to S-expressions ----------------------------------------------------------------------
 
 
-def _condition(condition: Expression | Condition) -> Sexp:
+def _condition(condition: Expression | Condition | Quantity) -> Sexp:
     match condition:
         case Number(value=value, unit=unit):
             return canonical_number(value, unit)
@@ -96,6 +99,25 @@ def _condition(condition: Expression | Condition) -> Sexp:
             return ("or", *[_condition(member) for member in members])
         case Compare(operator=operator, left=left, right=right):
             return (operator, _condition(left), _condition(right))
+        case Arithmetic(operator=operator, operands=operands):
+            return (operator, *[_condition(operand) for operand in operands])
+        case Memory():
+            return _memory(condition)
+
+
+def _memory(memory: Memory) -> Sexp:
+    parts: list[Sexp] = [memory.form]
+    match memory.form:
+        case "delay":
+            parts.append("true" if memory.initial else "false")
+        case "held-for" | "within" if memory.duration:
+            parts.append(_condition(memory.duration))
+        case "at-least":
+            parts.append(str(memory.count))
+    parts += [_condition(one) for one in memory.conditions]
+    if memory.form == "at-least" and len(memory.conditions) == 2:
+        parts.insert(-1, ":reset")
+    return tuple(parts)
 
 
 def _goal(goal: Goal) -> Sexp:

@@ -149,7 +149,7 @@ class Controller(Generic[C]):
                 return self.crew.values[term.name](self._channels)
             case "number" | "truth":
                 return term.value
-            case "symbol":
+            case _:
                 return term.name
 
     def _stop_losers(self, decision: Decision) -> None:

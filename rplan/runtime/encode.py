@@ -75,4 +75,21 @@ def _expression(atom: Atom, names: Mapping[str, str]) -> str:
 
 
 def _side(term: Term, names: Mapping[str, str]) -> str:
-    return names[term.text] if term.kind == "call" else repr(term.value)
+    match term.kind:
+        case "call":
+            return names[term.text]
+        case "arithmetic":
+            return _arithmetic(term.name, [_side(operand, names) for operand in term.arguments])
+        case _:
+            return f"({term.value!r})"
+
+
+def _arithmetic(operator: str, operands: list[str]) -> str:
+    """As Python says `rplan.goals.condition.operate`."""
+    if operator == "abs" or (operator in ("min", "max") and len(operands) > 1):
+        return f"{operator}({', '.join(operands)})"
+    if operator == "-" and len(operands) == 1:
+        return f"(-{operands[0]})"
+    if operator == "-" and len(operands) > 2:
+        return f"({operands[0]} - ({' + '.join(operands[1:])}))"
+    return f"({f' {operator} '.join(operands)})" if len(operands) > 1 else operands[0]

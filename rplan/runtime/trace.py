@@ -39,7 +39,7 @@ class Trace:
     def _way(self, decision: Decision) -> tuple[TakenWay, str]:
         key = (decision.inputs, decision.registers)
         if key not in self._known:
-            way = taken_way(self._ways, decision.inputs)
+            way = taken_way(self._ways, decision.inputs, decision.registers)
             self._known[key] = way, _compact(way_json(way))
         return self._known[key]
 

@@ -27,7 +27,7 @@ def has_comparisons(ways: Ways) -> bool:
 
 def exhaustible(ways: Ways) -> bool:
     """Whether every combination of atoms is a situation, and there are few enough."""
-    return len(ways.atoms) <= MOST_ATOMS and not has_comparisons(ways)
+    return len(ways.atoms) <= MOST_ATOMS and not has_comparisons(ways) and not ways.registers
 
 
 def count_situations(ways: Ways, guard: int) -> int:
@@ -72,8 +72,8 @@ def _every(ways: Ways) -> list[int]:
     return evaluate_many(ways.guards, [_column(n, situations) for n in range(len(ways.atoms))], situations)
 
 
-def evaluate_many(guards: Guards, atoms: Sequence[int], situations: int) -> list[int]:
-    """The value of every node in many situations; bit s of an atom is its value in situation s."""
+def evaluate_many(guards: Guards, atoms: Sequence[int], situations: int, registers: Sequence[int] = ()) -> list[int]:
+    """The value of every node in many situations; bit s of an atom or register is its value in situation s."""
     every = (1 << situations) - 1
     values: list[int] = []
     for kind, a, b in guards.nodes:
@@ -82,6 +82,8 @@ def evaluate_many(guards: Guards, atoms: Sequence[int], situations: int) -> list
                 values.append(every if a else 0)
             case "atom":
                 values.append(atoms[a])
+            case "register":
+                values.append(registers[a])
             case "not":
                 values.append(values[a] ^ every)
             case "and":

@@ -1,7 +1,7 @@
-"""Guards: boolean expressions over atoms, each distinct one stored once.
+"""Guards: boolean expressions over atoms and registers, each distinct one stored once.
 
-Takes: atoms by number. Gives: `Guards`, a growing table of nodes in which a node reads only smaller ones; equal
-expressions get equal numbers. Leaves alone: what an atom asks of the world.
+Takes: atoms and registers by number. Gives: `Guards`, a growing table of nodes in which a node reads only smaller
+ones; equal expressions get equal numbers. Leaves alone: what an atom asks of the world.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from typing import Literal
 FALSE = 0
 TRUE = 1
 
-Kind = Literal["constant", "atom", "not", "and", "or"]
+Kind = Literal["constant", "atom", "register", "not", "and", "or"]
 Node = tuple[Kind, int, int]
-"""constant: its value; atom: its number; not: its operand, twice; and, or: their operands, the smaller first."""
+"""constant: its value; atom, register: its number; not: its operand, twice; and, or: operands, the smaller first."""
 
 
 @dataclass(slots=True)
@@ -28,6 +28,10 @@ class Guards:
     def atom(self, number: int) -> int:
         """The guard that asks atom `number`."""
         return self._node(("atom", number, number))
+
+    def register(self, number: int) -> int:
+        """The guard that reads register `number`."""
+        return self._node(("register", number, number))
 
     def negation(self, a: int) -> int:
         """Not a."""
@@ -108,8 +112,8 @@ class Guards:
             self.nodes.append(node)
         return number
 
-    def evaluate(self, atoms: Sequence[bool]) -> list[bool]:
-        """The value of every node in one situation; atoms by number."""
+    def evaluate(self, atoms: Sequence[bool], registers: Sequence[bool] = ()) -> list[bool]:
+        """The value of every node in one situation; atoms and registers by number."""
         values: list[bool] = []
         for kind, a, b in self.nodes:
             match kind:
@@ -117,6 +121,8 @@ class Guards:
                     values.append(bool(a))
                 case "atom":
                     values.append(atoms[a])
+                case "register":
+                    values.append(registers[a])
                 case "not":
                     values.append(not values[a])
                 case "and":

@@ -1,6 +1,6 @@
 """The reference meaning of a goal in one situation (L12-L18), as plainly as it can be said.
 
-Takes: a reduced goal and a situation (which conditions hold). Gives: its open ways, and the one that is taken.
+Takes: a reduced goal and a situation (which atoms hold, now and before). Gives: its open ways, and the one taken.
 Leaves alone: cost. It builds every way; the compiler (reduce.py) must agree with it and builds none.
 
 A place in a goal is the path of child numbers that leads to it, so that comparing paths compares textual order.
@@ -8,16 +8,34 @@ A place in a goal is the path of child numbers that leads to it, so that compari
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 from itertools import product
 
-from rplan.goals.condition import AllOf, AnyOf, Comparison, Condition, Constant, Not, Percept
+from rplan.goals.condition import AllOf, AnyOf, Comparison, Condition, Constant, Memory, Named, Not, Percept
 from rplan.goals.goal import And, Anything, Do, Goal, If, Or, PrioAnd, Reduced, children
 
 Place = tuple[int, ...]
-Situation = Callable[[str], bool]
+Atoms = Callable[[str], bool]
 """Canonical text of an atom -> whether it holds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """A tick: which atoms hold, the tick before (None: this is the first), and what recursive names stand for."""
+
+    atoms: Atoms
+    before: Situation | None = None
+    definitions: Mapping[str, Condition] = field(default_factory=dict)
+
+    def history(self) -> list[Situation]:
+        """This tick and all before it, the latest first."""
+        here: Situation | None = self
+        found = []
+        while here is not None:
+            found.append(here)
+            here = here.before
+        return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +54,11 @@ def holds(condition: Condition, situation: Situation) -> bool:
         case Constant(value):
             return value
         case Percept(text) | Comparison(text):
-            return situation(text)
+            return situation.atoms(text)
+        case Named(name):
+            return holds(situation.definitions[name], situation)
+        case Memory():
+            return _remembered(condition, situation)
         case Not(inner):
             return not holds(inner, situation)
         case AllOf(parts):
@@ -45,14 +67,50 @@ def holds(condition: Condition, situation: Situation) -> bool:
             return any(holds(part, situation) for part in parts)
 
 
-def ways(goal: Goal, situation: Situation) -> list[Way]:
+def _remembered(memory: Memory, situation: Situation) -> bool:
+    """A condition that asks the past (L9), said of the whole history."""
+    past = situation.history()
+    before = past[1:2]
+
+    def held(tick: Situation, condition: int = 0) -> bool:
+        return holds(memory.conditions[condition], tick)
+
+    match memory.form:
+        case "delay":
+            return held(before[0]) if before else memory.initial
+        case "once":
+            return any(map(held, past))
+        case "historically":
+            return all(map(held, past))
+        case "since":
+            return any(held(tick, 1) and all(map(held, past[:ago])) for ago, tick in enumerate(past))
+        case "latch":
+            return any(
+                held(tick) and not any(held(later, 1) for later in past[: ago + 1]) for ago, tick in enumerate(past)
+            )
+        case "rose":
+            return any(held(situation) and not held(tick) for tick in before)
+        case "fell":
+            return any(not held(situation) and held(tick) for tick in before)
+        case "held-for":
+            return len(past) >= memory.ticks and all(map(held, past[: memory.ticks]))
+        case "within":
+            return any(map(held, past[: memory.ticks]))
+        case "at-least":
+            resets = len(memory.conditions) == 2
+            since = next((ago for ago, tick in enumerate(past) if resets and held(tick, 1)), len(past))
+            return sum(map(held, past[:since])) >= memory.ticks
+
+
+def ways(goal: Goal, situation: Situation | Atoms) -> list[Way]:
     """Every open way of a goal in a situation, the preferred one first (L18)."""
+    situation = situation if isinstance(situation, Situation) else Situation(situation)
     compatible = (way for way in _ways(goal, (), situation) if not _conflicting(way))
     members, alternatives = _places(goal)
     return sorted(compatible, key=lambda way: _rank(way, members, alternatives))
 
 
-def taken(goal: Goal, situation: Situation) -> Way | None:
+def taken(goal: Goal, situation: Situation | Atoms) -> Way | None:
     """The way that gives up least; None is a hole."""
     return next(iter(ways(goal, situation)), None)
 

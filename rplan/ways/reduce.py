@@ -13,12 +13,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from rplan.goals.condition import AllOf, AnyOf, Atom, Comparison, Condition, Constant, Not, Percept
+from rplan.goals.condition import AllOf, AnyOf, Atom, Comparison, Condition, Constant, Memory, Named, Not, Percept
 from rplan.goals.condition import atoms as atoms_of
 from rplan.goals.goal import And, Anything, Do, Goals, If, Or, PrioAnd, Reduced, conditions
 from rplan.ways.alternatives import LIMIT, Alternatives, Choice
 from rplan.ways.guards import FALSE, TRUE, Guards
 from rplan.ways.layout import Layout, Member, lay_out
+from rplan.ways.memory import Register, Registers
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,13 +28,14 @@ class Ways:
 
     sets: output -> canonical text of a value -> guard, in textual order. hole: no way is open. reached: node number ->
     served by the way that is taken; given_up: member number -> given up by it. asked: node number -> condition of an
-    `if` (true elsewhere). atoms: what guards ask, by number.
+    `if` (true elsewhere). atoms, registers: what guards ask, by number.
     """
 
     goals: Goals
     layout: Layout
     guards: Guards
     atoms: tuple[Atom, ...]
+    registers: tuple[Register, ...]
     asked: tuple[int, ...]
     sets: dict[str, dict[str, int]]
     hole: int
@@ -95,8 +97,9 @@ class _Reducer:
         self.atoms: dict[str, int] = {}
         self.atom_list: list[Atom] = []
         self.by_condition: dict[int, int] = {}
+        self.registers = Registers(self.guards, self.guard_of)
         self.layout = lay_out(goals.top)
-        for condition in conditions(goals.top):
+        for condition in (*conditions(goals.top), *goals.definitions.values()):
             for atom in atoms_of(condition):
                 if atom.text not in self.atoms:
                     self.atoms[atom.text] = len(self.atom_list)
@@ -121,6 +124,10 @@ class _Reducer:
                 return TRUE if value else FALSE
             case Percept(text) | Comparison(text):
                 return self.guards.atom(self.atoms[text])
+            case Memory():
+                return self.registers.value(condition)
+            case Named(name):
+                return self.guard_of(self.goals.definitions[name])
             case Not(inner):
                 return self.guards.negation(self._guard(inner))
             case AllOf(parts):
@@ -276,6 +283,7 @@ class _Reducer:
             layout=self.layout,
             guards=self.guards,
             atoms=tuple(self.atom_list),
+            registers=self.registers.finished(),
             asked=tuple(
                 self.guard_of(node.goal.condition) if isinstance(node.goal, If) else TRUE for node in self.layout.nodes
             ),

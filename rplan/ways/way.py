@@ -55,9 +55,9 @@ class TakenWay:
     given_up: tuple[GivenUp, ...]
 
 
-def taken_way(ways: Ways, atoms: Sequence[bool]) -> TakenWay:
-    """The way taken where the atoms (by number) have these values."""
-    values = ways.guards.evaluate(atoms)
+def taken_way(ways: Ways, atoms: Sequence[bool], registers: Sequence[bool] = ()) -> TakenWay:
+    """The way taken where atoms and registers (by number) have these values."""
+    values = ways.guards.evaluate(atoms, registers)
     served = [node for node in ways.layout.nodes if values[ways.reached[node.number]]]
     acts = tuple(
         Act(node.goal.output, node.goal.value.text, node.goal.rule, node.goal.span)

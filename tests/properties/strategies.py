@@ -11,7 +11,18 @@ from hypothesis import strategies as st
 
 from rplan.circuit.cell import Cell, Op
 from rplan.circuit.circuit import Circuit, Port, Register
-from rplan.goals.condition import AllOf, AnyOf, Comparison, Condition, Constant, Not, Percept, Term
+from rplan.goals.condition import (
+    AllOf,
+    AnyOf,
+    Comparison,
+    Condition,
+    Constant,
+    Memory,
+    Not,
+    Percept,
+    Term,
+    print_condition,
+)
 from rplan.goals.goal import And, Anything, Do, Goal, Goals, If, Or, Output, PrioAnd, walk
 from rplan.goals.signature import BOOL
 from rplan.lang.plan import Comparator, Type
@@ -123,3 +134,27 @@ def circuits_with_traces(draw: st.DrawFn) -> tuple[Circuit, list[Sequence[bool]]
     circuit = draw(circuits())
     tick = st.lists(st.booleans(), min_size=len(circuit.inputs), max_size=len(circuit.inputs))
     return circuit, draw(st.lists(tick.map(tuple), max_size=8))
+
+
+def memories(inner: st.SearchStrategy[Condition]) -> st.SearchStrategy[Condition]:
+    """Conditions that ask the past, with their canonical texts."""
+
+    def make(form: str, parts: list[Condition], initial: bool, ticks: int) -> Condition:
+        count = 2 if form in ("since", "latch") else 1
+        if form == "at-least" and initial:
+            count = 2
+        used = tuple(parts[:count])
+        extra = {"delay": ["true" if initial else "false"], "held-for": [str(ticks)], "within": [str(ticks)]}
+        head = [form, *extra.get(form, []), *([str(ticks)] if form == "at-least" else [])]
+        text = f"({' '.join((*head, *map(print_condition, used)))})"
+        return Memory(text, form, used, initial, ticks)  # type: ignore[arg-type]
+
+    forms = ("delay", "once", "historically", "since", "latch", "rose", "fell", "held-for", "within", "at-least")
+    parts = st.lists(inner, min_size=2, max_size=2)
+    return st.builds(make, st.sampled_from(forms), parts, st.booleans(), st.integers(1, 6))
+
+
+def remembering() -> st.SearchStrategy[Condition]:
+    """Conditions with memory anywhere inside."""
+    leaves = st.sampled_from(ATOMS[:2]).map(percept)
+    return st.recursive(leaves, lambda inner: memories(inner) | inner.map(Not) | memories(inner), max_leaves=4)
