@@ -262,6 +262,13 @@ def test_a_goal_behind_something_counts_as_reached_within_an_arms_length(standin
     assert robot.sense(world.read())["we-are-at-the-goal"]
 
 
+def test_a_goal_beside_something_counts_as_reached_before_danger_begins(standin):
+    """A goal so near to a thing that runaway would drive the robot off it again and again."""
+    world = standin.World(discs=[standin.Disc(1.9, 0.75, 0.25)])
+    fled, arrived = drive_to(standin, world, standin.Pose(2.2, 0.0), 100)
+    assert arrived and fled == 0
+
+
 def test_without_a_goal_it_stands_and_says_so(standin):
     world = standin.World()
     robot = standin.Robot("natigation")
