@@ -19,7 +19,8 @@ class ArrivalSettings:
     """Lengths [m], angle [rad].
 
     The robot has arrived within `arrival` of the goal, or within `goal_tolerance` of it with something closer than
-    `stand_off` to the hull, up to `stand_off_angle` to either side of the direction of the goal. It stays arrived up to `goal_tolerance` + `leave`.
+    `stand_off` to the hull, up to `stand_off_angle` to either side of the direction of the goal. It stays arrived up
+    to `goal_tolerance` + `leave`.
     """
 
     goal_tolerance: float = 1.5 * 0.3048

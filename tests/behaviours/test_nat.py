@@ -212,6 +212,16 @@ def test_a_shallow_canyon_is_escaped(standin):
     assert arrived and world.touched == 0
 
 
+def test_a_canyon_that_takes_more_circles_than_there_are_is_a_trap(standin):
+    """The limitation that the paper states: no memory beyond its ten obstacles."""
+    walls = [standin.Wall(3, -2, 3, 2), standin.Wall(0, 2, 3, 2), standin.Wall(0, -2, 3, -2)]
+    world, seen = standin.World(walls=walls), []
+    _, arrived = drive_to(
+        standin, world, standin.Pose(7.0, 0.0), 300, lambda _, robot: seen.append(robot.estimator(Obstacles).memory)
+    )
+    assert not arrived and world.touched == 0 and seen[-1].overflow > 100
+
+
 def test_the_plan_is_reported_as_plain_values_and_the_same_between_sweeps(standin):
     world = standin.World(discs=[standin.Disc(2.0, 0.1, 0.3)])
     robot = standin.Robot("robot", "natigation")
