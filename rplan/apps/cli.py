@@ -11,8 +11,6 @@ from importlib import import_module
 
 import click
 
-from rplan.lang.diagnostic import InternalError
-
 COMMANDS = {
     "check": "Say what is wrong with a plan before it runs.",
     "compile": "Compile a plan and say what a tick costs.",
@@ -21,6 +19,7 @@ COMMANDS = {
     "tick": "Run a plan alone: percepts in, outputs out, one JSON object a line.",
     "ways": "List the ways of a plan; --paper counts them as the paper does.",
 }
+USED_WRONGLY = 2
 INTERNAL = 70
 
 
@@ -60,14 +59,20 @@ def cli() -> None:
 
 
 def main() -> None:
-    """The entry point. A fault of rplan's own says so and exits with 70; a broken pipe ends quietly."""
+    """The entry point.
+
+    A fault of rplan's own says so and exits with 70, what the system refuses (a full disk) with 2; a broken pipe ends
+    quietly.
+    """
     try:
         cli()
     except BrokenPipeError:
         sys.stderr.close()
         sys.exit(0)
-    except InternalError as error:
-        _report(error)
+    except OSError as error:
+        what = "" if error.filename is None else f"{error.filename}: "
+        click.echo(f"error: {what}{error.strerror or error}", err=True)
+        sys.exit(USED_WRONGLY)
     except Exception as error:
         _report(error)
 
