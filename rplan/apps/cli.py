@@ -53,7 +53,7 @@ class Commands(click.Group):
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(package_name="rplan")
+@click.version_option(package_name="rplan", prog_name="rplan")
 def cli() -> None:
     """Plans for robots: goals, priorities and reduction rules, checked before they run and explained afterwards."""
 
