@@ -19,14 +19,15 @@ class ArrivalSettings:
     """Lengths [m], angle [rad].
 
     The robot has arrived within `arrival` of the goal, or within `goal_tolerance` of it with something closer than
-    `stand_off` before the hull in the direction of the goal. It stays arrived up to `goal_tolerance` + `leave`.
+    `stand_off` to the hull, up to `stand_off_angle` to either side of the direction of the goal. It stays arrived up
+    to `goal_tolerance` + `leave`.
     """
 
     goal_tolerance: float = 1.5 * 0.3048
     arrival: float = 0.15
     leave: float = 0.15
     stand_off: float = 0.32
-    stand_off_angle: float = math.radians(30.0)
+    stand_off_angle: float = math.radians(90.0)
     same_goal: float = 0.1
 
 

@@ -11,8 +11,6 @@ from importlib import import_module
 
 import click
 
-from rplan.lang.diagnostic import InternalError
-
 COMMANDS = {
     "check": "Say what is wrong with a plan before it runs.",
     "compile": "Compile a plan and say what a tick costs.",
@@ -21,6 +19,7 @@ COMMANDS = {
     "tick": "Run a plan alone: percepts in, outputs out, one JSON object a line.",
     "ways": "List the ways of a plan; --paper counts them as the paper does.",
 }
+USED_WRONGLY = 2
 INTERNAL = 70
 
 
@@ -54,20 +53,26 @@ class Commands(click.Group):
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(package_name="rplan")
+@click.version_option(package_name="rplan", prog_name="rplan")
 def cli() -> None:
     """Plans for robots: goals, priorities and reduction rules, checked before they run and explained afterwards."""
 
 
 def main() -> None:
-    """The entry point. A fault of rplan's own says so and exits with 70; a broken pipe ends quietly."""
+    """The entry point.
+
+    A fault of rplan's own says so and exits with 70, what the system refuses (a full disk) with 2; a broken pipe ends
+    quietly.
+    """
     try:
         cli()
     except BrokenPipeError:
         sys.stderr.close()
         sys.exit(0)
-    except InternalError as error:
-        _report(error)
+    except OSError as error:
+        what = "" if error.filename is None else f"{error.filename}: "
+        click.echo(f"error: {what}{error.strerror or error}", err=True)
+        sys.exit(USED_WRONGLY)
     except Exception as error:
         _report(error)
 

@@ -212,6 +212,16 @@ def test_a_shallow_canyon_is_escaped(standin):
     assert arrived and world.touched == 0
 
 
+def test_a_canyon_that_takes_more_circles_than_there_are_is_a_trap(standin):
+    """The limitation that the paper states: no memory beyond its ten obstacles."""
+    walls = [standin.Wall(3, -2, 3, 2), standin.Wall(0, 2, 3, 2), standin.Wall(0, -2, 3, -2)]
+    world, seen = standin.World(walls=walls), []
+    _, arrived = drive_to(
+        standin, world, standin.Pose(7.0, 0.0), 300, lambda _, robot: seen.append(robot.estimator(Obstacles).memory)
+    )
+    assert not arrived and world.touched == 0 and seen[-1].overflow > 100
+
+
 def test_the_plan_is_reported_as_plain_values_and_the_same_between_sweeps(standin):
     world = standin.World(discs=[standin.Disc(2.0, 0.1, 0.3)])
     robot = standin.Robot("robot", "natigation")
@@ -260,6 +270,13 @@ def test_a_goal_behind_something_counts_as_reached_within_an_arms_length(standin
     robot.act(reading, "stop", goal=standin.Pose(1.05, 0.0))
     world.pose = standin.Pose(0.7, 0.0, 0.0)
     assert robot.sense(world.read())["we-are-at-the-goal"]
+
+
+def test_a_goal_beside_something_counts_as_reached_before_danger_begins(standin):
+    """A goal so near to a thing that runaway would drive the robot off it again and again."""
+    world = standin.World(discs=[standin.Disc(1.9, 0.75, 0.25)])
+    fled, arrived = drive_to(standin, world, standin.Pose(2.2, 0.0), 100)
+    assert arrived and fled == 0
 
 
 def test_without_a_goal_it_stands_and_says_so(standin):

@@ -5,11 +5,16 @@ from __future__ import annotations
 import ast
 import os
 import re
+import shlex
 from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
+from click.testing import CliRunner
+
 from behaviours.catalogue import LIBRARIES
 from behaviours.interface import Library
+from rplan.apps.cli import cli
 from rplan.apps.wiring import PlanBrain, signatures
 from rplan.driver import compile_plan
 from rplan.lang.diagnostic import Diagnostic, PlanError, render
@@ -101,4 +106,47 @@ def test_every_example_of_a_diagnostic_says_what_the_page_says(root: Path) -> No
         shown = f"```lisp wrong\n{plan}```\n\n```text\n{said[0]}\n```"
         expected += f"## {code}\n" + body.replace(example[0], shown)
     assert tuple(without) == WITHOUT_EXAMPLE
+    assert same(page, expected)
+
+
+# --- what commands print --------------------------------------------------------------------------------
+
+BLOCK = re.compile(r"^```(lisp wrong|lisp|text)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+PRINTING = ("reference/commands.md", "tutorial/first_plan.md", "explanation/order_of_ways.md")
+
+
+def printed(command: str, plan: str) -> str:
+    """What a shell line `rplan …` or `echo '…' | rplan …` prints; a plan file that is not there is the given plan."""
+    given, _, called = command.rpartition(" | ")
+    arguments = shlex.split(called)[1:]
+    for name in arguments:
+        if name.endswith(".rplan") and "/" not in name:
+            Path(name).write_text(plan, encoding="utf-8")
+    text = shlex.split(given)[1] + "\n" if given else None
+    return CliRunner().invoke(cli, arguments, input=text).output
+
+
+def session(text: str, plan: str) -> str:
+    """The block with every command run again; simulations are left as they are, for they print how fast they were."""
+    parts = re.split(r"^\$ (.*)\n", text, flags=re.MULTILINE)[1:]
+    return "".join(
+        f"$ {command}\n" + (said if "simulate" in command else printed(command, plan).strip("\n") + "\n")
+        for command, said in zip(parts[::2], parts[1::2], strict=True)
+    )
+
+
+@pytest.mark.parametrize("name", PRINTING)
+def test_commands_print_what_the_page_shows(
+    name: str, root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "plans").symlink_to(root / "plans")
+    page = root / "docs" / name
+    plan = ""
+    expected = page.read_text(encoding="utf-8")
+    for kind, text in BLOCK.findall(expected):
+        if kind != "text":
+            plan = text
+        elif text.startswith("$ "):
+            expected = expected.replace(f"```text\n{text}```", f"```text\n{session(text, plan)}```", 1)
     assert same(page, expected)

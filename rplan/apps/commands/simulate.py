@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
@@ -32,7 +33,7 @@ NOT_DONE = 1
 @click.argument("plan")
 @click.option("--scenario", help="YAML file, or the name of one beside the plan. Default: the only one beside it.")
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Everything by chance follows it.")
-@click.option("--until", type=click.FloatRange(0, min_open=True), help="Simulated seconds at most.")
+@click.option("--until", type=click.FloatRange(0, 1e6, min_open=True), help="Simulated seconds at most.")
 @click.option("--record", type=click.Path(dir_okay=False, path_type=Path), help="Write a recording (MCAP).")
 @click.option("--replay", type=click.Path(dir_okay=False, path_type=Path), help="Write a page that plays the run.")
 @click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Write a picture of the run (PNG).")
@@ -53,6 +54,8 @@ def command(
 
     Exit code 0 only if the task is done.
     """
+    if until is not None and math.isnan(until):
+        raise InputError("--until is not a number")
     path = plan_file(plan)
     compiled = talk.compiled(path, allow_holes=allow_holes, as_json=as_json)
     world = _world(scenario_file(scenario, path))

@@ -1,0 +1,67 @@
+"""What is built and released: version, wheel, gate, and no trace of the machine that it was written on."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+import zipfile
+from pathlib import Path
+
+from hatchling.builders.wheel import WheelBuilder
+
+MACHINE = re.compile(r"(?<![\w.~-])/(?:work|tmp|root|home|opt|Users)/")
+ANYWHERE = ("tests/repo/test_packaging.py",)
+"""Speaks of such places on purpose."""
+UNFINISHED = re.compile(r"TODO|FIXME|XXX|NotImplementedError|pragma: no cover|type: ignore|pytest\.skip|xfail")
+
+
+def test_the_version_is_the_newest_of_the_changelog(root: Path) -> None:
+    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    newest = re.search(r"^## \[([\d.]+)\]", (root / "CHANGELOG.md").read_text(encoding="utf-8"), re.MULTILINE)
+    assert newest is not None
+    assert newest[1] == project["version"]
+
+
+def test_no_text_has_a_path_of_somebodys_machine(texts: dict[Path, str], root: Path) -> None:
+    found = [
+        f"{path.relative_to(root)}:{number}"
+        for path, text in texts.items()
+        if str(path.relative_to(root)) not in ANYWHERE
+        for number, line in enumerate(text.splitlines(), start=1)
+        if MACHINE.search(line)
+    ]
+    assert found == []
+
+
+def test_nothing_is_left_for_later(texts: dict[Path, str], root: Path) -> None:
+    found = [
+        f"{path.relative_to(root)}: {word}"
+        for path, text in texts.items()
+        if path.suffix == ".py" and path != Path(__file__)
+        for word in UNFINISHED.findall(text)
+    ]
+    assert found == []
+
+
+def test_the_gate_runs_the_test_command_of_the_readme(root: Path) -> None:
+    command = "python tests/run.py"
+    assert f".venv/bin/{command}\n" in (root / "README.md").read_text(encoding="utf-8")
+    gate = (root / ".ci" / "run").read_text(encoding="utf-8")
+    assert "set -euo pipefail" in gate
+    assert gate.rstrip().endswith('/python" tests/run.py')
+
+
+def test_the_wheel_has_the_packages_the_plans_and_the_replay_page(root: Path, tmp_path: Path) -> None:
+    wheel = next(iter(WheelBuilder(str(root)).build(directory=str(tmp_path), versions=["standard"])))
+    names = zipfile.ZipFile(wheel).namelist()
+    wanted = [f"{path.relative_to(root)}" for name in ("rplan", "behaviours", "sim") for path in sources(root / name)]
+    wanted += [f"rplan/_plans/{path.relative_to(root / 'plans')}" for path in (root / "plans").rglob("*.rplan")]
+    wanted += ["rplan/_plans/find_and_fetch/parking_lot.yaml", "sim/replay.html", "rplan/lang/plan.lark"]
+    wanted += ["rplan/py.typed", "behaviours/py.typed", "sim/py.typed"]
+    assert len(wanted) > 80
+    assert [name for name in wanted if name not in names] == []
+    assert [name for name in names if "__pycache__" in name or name.startswith(("tests/", "docs/"))] == []
+
+
+def sources(folder: Path) -> list[Path]:
+    return sorted(folder.rglob("*.py"))
