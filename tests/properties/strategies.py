@@ -136,22 +136,30 @@ def circuits_with_traces(draw: st.DrawFn) -> tuple[Circuit, list[Sequence[bool]]
     return circuit, draw(st.lists(tick.map(tuple), max_size=8))
 
 
+def remember(form: str, parts: list[Condition], *, initial: bool, ticks: int) -> Condition:
+    """A condition with memory; initial also says whether `at-least` has a reset."""
+    two = form in ("since", "latch") or (form == "at-least" and initial and len(parts) > 1)
+    used = tuple(parts[: 2 if two else 1])
+    head = {"delay": ["true" if initial else "false"], "held-for": [f"{ticks / 10:g}s"], "within": [f"{ticks / 10:g}s"]}
+    words = [form, *head.get(form, [str(ticks)] if form == "at-least" else []), *map(print_condition, used)]
+    if form == "at-least" and two:
+        words.insert(-1, ":reset")
+    counted = ticks if form in ("held-for", "within", "at-least") else 0
+    return Memory(f"({' '.join(words)})", form, used, initial, counted)  # type: ignore[arg-type]
+
+
+MEMORY_FORMS = ("delay", "once", "historically", "since", "latch", "rose", "fell", "held-for", "within", "at-least")
+
+
 def memories(inner: st.SearchStrategy[Condition]) -> st.SearchStrategy[Condition]:
-    """Conditions that ask the past, with their canonical texts."""
-
-    def make(form: str, parts: list[Condition], initial: bool, ticks: int) -> Condition:
-        count = 2 if form in ("since", "latch") else 1
-        if form == "at-least" and initial:
-            count = 2
-        used = tuple(parts[:count])
-        extra = {"delay": ["true" if initial else "false"], "held-for": [str(ticks)], "within": [str(ticks)]}
-        head = [form, *extra.get(form, []), *([str(ticks)] if form == "at-least" else [])]
-        text = f"({' '.join((*head, *map(print_condition, used)))})"
-        return Memory(text, form, used, initial, ticks)  # type: ignore[arg-type]
-
-    forms = ("delay", "once", "historically", "since", "latch", "rose", "fell", "held-for", "within", "at-least")
-    parts = st.lists(inner, min_size=2, max_size=2)
-    return st.builds(make, st.sampled_from(forms), parts, st.booleans(), st.integers(1, 6))
+    """Conditions that ask the past."""
+    return st.builds(
+        lambda form, parts, initial, ticks: remember(form, parts, initial=initial, ticks=ticks),
+        st.sampled_from(MEMORY_FORMS),
+        st.lists(inner, min_size=2, max_size=2),
+        st.booleans(),
+        st.integers(1, 6),
+    )
 
 
 def remembering() -> st.SearchStrategy[Condition]:
