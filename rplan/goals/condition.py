@@ -108,13 +108,24 @@ class Named:
     name: str
 
 
-Condition = Constant | Percept | Comparison | Not | AllOf | AnyOf | Memory | Named
+@dataclass(frozen=True, slots=True)
+class OutputIs:
+    """A question that only properties ask: whether the way of this tick sets `output` to `value` (canonical text).
+
+    value None asks whether the way leaves it open.
+    """
+
+    output: str
+    value: str | None
+
+
+Condition = Constant | Percept | Comparison | Not | AllOf | AnyOf | Memory | Named | OutputIs
 
 
 def atoms(condition: Condition) -> Iterator[Atom]:
     """Every atom in it, in textual order, with repetitions."""
     match condition:
-        case Constant() | Named():
+        case Constant() | Named() | OutputIs():
             return
         case Percept() | Comparison():
             yield condition
@@ -204,6 +215,8 @@ def print_condition(condition: Condition) -> str:
             return text
         case Named(name):
             return f"({name})"
+        case OutputIs(output, value):
+            return f"(open {output})" if value is None else f"(= {output} {value})"
         case Not(inner):
             return f"(not {print_condition(inner)})"
         case AllOf(parts):

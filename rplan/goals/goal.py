@@ -105,6 +105,25 @@ class BoundLibrary:
 
 
 @dataclass(frozen=True, slots=True)
+class Property:
+    """`always` must hold in every tick in which `provided` holds; both may ask `OutputIs` and the past."""
+
+    name: str
+    doc: str
+    always: Condition
+    provided: Condition
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Assumption:
+    """What may be taken for granted of the percepts in every tick."""
+
+    condition: Condition
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
 class Goals:
     """A checked plan. outputs in the order in which channels are filled (L25); functions: every name that is known.
 
@@ -121,11 +140,21 @@ class Goals:
     functions: Mapping[str, FunctionSignature]
     span: Span
     definitions: Mapping[str, Condition] = field(default_factory=dict)
+    properties: tuple[Property, ...] = ()
+    assumptions: tuple[Assumption, ...] = ()
+
+    def conditions(self) -> Iterator[Condition]:
+        """Every condition that is asked, those of the top goal first."""
+        yield from conditions(self.top)
+        yield from self.definitions.values()
+        for one in self.properties:
+            yield from (one.always, one.provided)
+        yield from (one.condition for one in self.assumptions)
 
     def percepts(self) -> tuple[Term, ...]:
         """The functions that stand in conditions, once each, in textual order of the reduced goal."""
         seen: dict[str, Term] = {}
-        for condition in (*conditions(self.top), *self.definitions.values()):
+        for condition in self.conditions():
             for atom in atoms_of(condition):
                 for term in percept_terms(atom):
                     seen.setdefault(term.text, term)

@@ -14,7 +14,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import product
 
-from rplan.goals.condition import AllOf, AnyOf, Comparison, Condition, Constant, Memory, Named, Not, Percept
+from rplan.goals.condition import AllOf, AnyOf, Comparison, Condition, Constant, Memory, Named, Not, OutputIs, Percept
 from rplan.goals.goal import And, Anything, Do, Goal, If, Or, PrioAnd, Reduced
 
 Cube = frozenset[tuple[str, bool]]
@@ -121,6 +121,8 @@ def _disjuncts(condition: Condition, wanted: bool) -> list[Cube]:
             return [frozenset()] if value == wanted else []
         case Percept(text) | Comparison(text) | Memory(text) | Named(text):
             return [frozenset([(text, wanted)])]
+        case OutputIs():
+            raise ValueError("only properties ask for outputs")
         case Not(inner):
             return _disjuncts(inner, not wanted)
         case AllOf(parts) | AnyOf(parts):

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import product
 
-from rplan.goals.condition import AllOf, AnyOf, Comparison, Condition, Constant, Memory, Named, Not, Percept
+from rplan.goals.condition import AllOf, AnyOf, Comparison, Condition, Constant, Memory, Named, Not, OutputIs, Percept
 from rplan.goals.goal import And, Anything, Do, Goal, If, Or, PrioAnd, Reduced, children
 
 Place = tuple[int, ...]
@@ -22,11 +22,15 @@ Atoms = Callable[[str], bool]
 
 @dataclass(frozen=True, slots=True)
 class Situation:
-    """A tick: which atoms hold, the tick before (None: this is the first), and what recursive names stand for."""
+    """A tick: which atoms hold, the tick before (None: this is the first), and what recursive names stand for.
+
+    acts: what the way taken sets, where a property asks for it.
+    """
 
     atoms: Atoms
     before: Situation | None = None
     definitions: Mapping[str, Condition] = field(default_factory=dict)
+    acts: Mapping[str, str] | None = None
 
     def history(self) -> list[Situation]:
         """This tick and all before it, the latest first."""
@@ -57,6 +61,9 @@ def holds(condition: Condition, situation: Situation) -> bool:
             return situation.atoms(text)
         case Named(name):
             return holds(situation.definitions[name], situation)
+        case OutputIs(output, value):
+            assert situation.acts is not None
+            return situation.acts.get(output) == value
         case Memory():
             return _remembered(condition, situation)
         case Not(inner):

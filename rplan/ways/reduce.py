@@ -13,13 +13,33 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from rplan.goals.condition import AllOf, AnyOf, Atom, Comparison, Condition, Constant, Memory, Named, Not, Percept
+from rplan.goals.condition import (
+    AllOf,
+    AnyOf,
+    Atom,
+    Comparison,
+    Condition,
+    Constant,
+    Memory,
+    Named,
+    Not,
+    OutputIs,
+    Percept,
+)
 from rplan.goals.condition import atoms as atoms_of
-from rplan.goals.goal import And, Anything, Do, Goals, If, Or, PrioAnd, Reduced, conditions
+from rplan.goals.goal import And, Anything, Do, Goals, If, Or, PrioAnd, Reduced
 from rplan.ways.alternatives import LIMIT, Alternatives, Choice
 from rplan.ways.guards import FALSE, TRUE, Guards
 from rplan.ways.layout import Layout, Member, lay_out
 from rplan.ways.memory import Register, Registers
+
+
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """A property as guards: `always` has to hold where `provided` does."""
+
+    always: int
+    provided: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +49,7 @@ class Ways:
     sets: output -> canonical text of a value -> guard, in textual order. hole: no way is open. reached: node number ->
     served by the way that is taken; given_up: member number -> given up by it. asked: node number -> condition of an
     `if` (true elsewhere). atoms, registers: what guards ask, by number.
+    claims: of the properties, in their order; assumed: what may be taken for granted.
     """
 
     goals: Goals
@@ -41,6 +62,8 @@ class Ways:
     hole: int
     reached: tuple[int, ...]
     given_up: tuple[int, ...]
+    claims: tuple[Claim, ...]
+    assumed: tuple[int, ...]
 
     def signature(self) -> tuple[int, ...]:
         """The guards that tell one way from another: what is done, and what is given up."""
@@ -98,8 +121,9 @@ class _Reducer:
         self.atom_list: list[Atom] = []
         self.by_condition: dict[int, int] = {}
         self.registers = Registers(self.guards, self.guard_of)
+        self.sets: dict[str, dict[str, int]] = {}
         self.layout = lay_out(goals.top)
-        for condition in (*conditions(goals.top), *goals.definitions.values()):
+        for condition in goals.conditions():
             for atom in atoms_of(condition):
                 if atom.text not in self.atoms:
                     self.atoms[atom.text] = len(self.atom_list)
@@ -126,6 +150,8 @@ class _Reducer:
                 return self.guards.atom(self.atoms[text])
             case Memory():
                 return self.registers.value(condition)
+            case OutputIs(output, value):
+                return self._output_is(output, value)
             case Named(name):
                 return self.guard_of(self.goals.definitions[name])
             case Not(inner):
@@ -134,6 +160,12 @@ class _Reducer:
                 return self.guards.all_of(map(self._guard, parts))
             case AnyOf(parts):
                 return self.guards.any_of(map(self._guard, parts))
+
+    def _output_is(self, output: str, value: str | None) -> int:
+        values = self.sets.get(output, {})
+        if value is None:
+            return self.guards.negation(self.guards.any_of(values.values()))
+        return values.get(value, FALSE)
 
     def _measure(self) -> tuple[list[int], list[int]]:
         """For each node the groups that its leaves belong to, as bits, and how many nodes are in it."""
@@ -278,6 +310,9 @@ class _Reducer:
         for member in self.layout.members[1:]:
             parent = self.layout.nodes[member.node].parent
             given_up[member.number] = self.guards.but_not(reached[parent], reached[member.node])
+        self.sets = self._sets(hole, selected)
+        claims = tuple(Claim(self.guard_of(p.always), self.guard_of(p.provided)) for p in self.goals.properties)
+        assumed = tuple(self.guard_of(assumption.condition) for assumption in self.goals.assumptions)
         return Ways(
             goals=self.goals,
             layout=self.layout,
@@ -287,10 +322,12 @@ class _Reducer:
             asked=tuple(
                 self.guard_of(node.goal.condition) if isinstance(node.goal, If) else TRUE for node in self.layout.nodes
             ),
-            sets=self._sets(hole, selected),
+            sets=self.sets,
             hole=hole,
             reached=tuple(reached),
             given_up=tuple(given_up),
+            claims=claims,
+            assumed=assumed,
         )
 
     def _selected(self, options: list[_Option]) -> list[int]:
