@@ -32,8 +32,8 @@ def build(ways: Ways) -> Circuit:
     return Circuit(
         name=ways.goals.name,
         inputs=tuple(Port(atom.text, (_place(atom),)) for atom in ways.atoms),
-        registers=tuple(Register(one.name, one.initial, one.next) for one in ways.registers),
-        cells=tuple(map(_cell, ways.guards.nodes)),
+        registers=tuple(Register(one.name, one.initial, one.next) for one in ways.registers[: ways.driving]),
+        cells=tuple(_cell(node, ways.driving) for node in ways.guards.nodes),
         outputs=tuple(outputs),
     )
 
@@ -42,7 +42,8 @@ def _place(atom: Atom) -> Span:
     return atom.term.span if isinstance(atom, Percept) else atom.left.span
 
 
-def _cell(node: Node) -> Cell:
+def _cell(node: Node, registers: int) -> Cell:
+    """The cell of a guard; what serves properties alone reads nothing and is swept away."""
     kind, a, b = node
     match kind:
         case "constant":
@@ -50,7 +51,7 @@ def _cell(node: Node) -> Cell:
         case "atom":
             return Cell(Op.INPUT, (), a)
         case "register":
-            return Cell(Op.REGISTER, (), a)
+            return Cell(Op.REGISTER, (), a) if a < registers else Cell(Op.CONSTANT)
         case "not":
             return Cell(Op.NOT, (a,))
         case "and":

@@ -49,6 +49,7 @@ class Ways:
     sets: output -> canonical text of a value -> guard, in textual order. hole: no way is open. reached: node number ->
     served by the way that is taken; given_up: member number -> given up by it. asked: node number -> condition of an
     `if` (true elsewhere). atoms, registers: what guards ask, by number.
+    driving: so many registers, the first ones, serve the goal; the others serve properties alone.
     claims: of the properties, in their order; assumed: what may be taken for granted.
     """
 
@@ -57,6 +58,7 @@ class Ways:
     guards: Guards
     atoms: tuple[Atom, ...]
     registers: tuple[Register, ...]
+    driving: int
     asked: tuple[int, ...]
     sets: dict[str, dict[str, int]]
     hole: int
@@ -311,6 +313,7 @@ class _Reducer:
             parent = self.layout.nodes[member.node].parent
             given_up[member.number] = self.guards.but_not(reached[parent], reached[member.node])
         self.sets = self._sets(hole, selected)
+        driving = len(self.registers.finished())
         claims = tuple(Claim(self.guard_of(p.always), self.guard_of(p.provided)) for p in self.goals.properties)
         assumed = tuple(self.guard_of(assumption.condition) for assumption in self.goals.assumptions)
         return Ways(
@@ -319,6 +322,7 @@ class _Reducer:
             guards=self.guards,
             atoms=tuple(self.atom_list),
             registers=self.registers.finished(),
+            driving=driving,
             asked=tuple(
                 self.guard_of(node.goal.condition) if isinstance(node.goal, If) else TRUE for node in self.layout.nodes
             ),

@@ -56,8 +56,9 @@ class TakenWay:
 
 
 def taken_way(ways: Ways, atoms: Sequence[bool], registers: Sequence[bool] = ()) -> TakenWay:
-    """The way taken where atoms and registers (by number) have these values."""
-    values = ways.guards.evaluate(atoms, registers)
+    """The way taken where atoms and registers (by number, the driving ones) have these values."""
+    every = (*registers, *(False for _ in ways.registers[len(registers) :]))
+    values = ways.guards.evaluate(atoms, every)
     served = [node for node in ways.layout.nodes if values[ways.reached[node.number]]]
     acts = tuple(
         Act(node.goal.output, node.goal.value.text, node.goal.rule, node.goal.span)
