@@ -61,14 +61,11 @@ def cli() -> None:
 def main() -> None:
     """The entry point.
 
-    A fault of rplan's own says so and exits with 70, what the system refuses (a full disk) with 2; a broken pipe ends
-    quietly.
+    A fault of rplan's own says so and exits with 70, what the system refuses (a full disk) with 2. Ctrl-C and a reader
+    that goes away are click's affair: it ends quietly.
     """
     try:
         cli()
-    except BrokenPipeError:
-        sys.stderr.close()
-        sys.exit(0)
     except OSError as error:
         what = "" if error.filename is None else f"{error.filename}: "
         click.echo(f"error: {what}{error.strerror or error}", err=True)

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from behaviours.catalogue import LIBRARIES
 from behaviours.interface import Library
@@ -65,8 +66,8 @@ def _overview() -> None:
 
 
 def _details(library: Library) -> None:
-    console = Console()
-    console.print(f"[bold]{library.name}[/bold]: {library.doc}", highlight=False)
+    console = Console(highlight=False, markup=False)
+    console.print(Text.assemble((library.name, "bold"), f": {library.doc}"))
     functions = Table("function", "type", "says", title="Functions", title_justify="left", box=None)
     for f in library.functions:
         functions.add_row(f"({f.name})", f"{f.type} {f.unit}".strip(), f.doc)

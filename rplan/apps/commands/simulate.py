@@ -15,6 +15,7 @@ import click
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
+from rich.text import Text
 
 from rplan.apps import talk
 from rplan.apps.files import InputError, plan_file, scenario_file, unreadable
@@ -175,17 +176,17 @@ def phases(run: Run) -> list[tuple[str, float | None]]:
 
 
 def _show(run: Run, written: list[Path]) -> None:
-    console = Console(file=sys.stdout, highlight=False, soft_wrap=False)
+    console = Console(file=sys.stdout, highlight=False, markup=False)
     verdict = run.verdict
     style, word = ("bold green", "DONE") if verdict.done else ("bold red", "NOT DONE")
     reason = "the object was fetched and brought home" if verdict.done else verdict.reason
-    console.print(f"[{style}]{word}[/{style}]: {reason}")
+    console.print(Text.assemble((word, style), f": {reason}"))
     console.print(f"{run.plan} in {run.scenario}, seed {run.seed}\n")
     console.print(_verdict_table(run))
     console.print(_share_table(run))
     console.print(_switch_table(run))
     for fault in run.faults[:10]:
-        console.print(f"[red]fault[/red] at {fault}", markup=True)
+        console.print(Text.assemble(("fault", "red"), f" at {fault}"))
     for path in written:
         console.print(f"wrote {path}")
 

@@ -1,0 +1,120 @@
+"""The entry point: what ends with which exit code, and never with a traceback (L24)."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from rplan.apps import cli
+from rplan.lang.diagnostic import InternalError
+
+Ends = Callable[[Exception], tuple[int, str]]
+PLANS = Path(__file__).parents[2] / "plans"
+
+
+@pytest.fixture
+def ends(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Callable[[Exception], tuple[int, str]]:
+    """Lets a command raise; gives the exit code and what stderr says."""
+
+    def run(error: Exception) -> tuple[int, str]:
+        def command() -> None:
+            raise error
+
+        monkeypatch.setattr(cli, "cli", command)
+        with pytest.raises(SystemExit) as caught:
+            cli.main()
+        said = capsys.readouterr().err
+        assert "Traceback" not in said
+        return int(str(caught.value.code)), said
+
+    return run
+
+
+@pytest.mark.rule("L24")
+@pytest.mark.parametrize("error", [InternalError("net 3 reads itself"), ZeroDivisionError("by zero")])
+def test_a_fault_of_rplan_exits_with_70_and_says_whose_fault_it_is(ends: Ends, error: Exception) -> None:
+    code, said = ends(error)
+    assert code == 70
+    assert said.startswith(f"rplan has a fault of its own: {type(error).__name__}: {error} (")
+    assert "test_main:" in said, "where it happened"
+    assert "Nothing is wrong with your plan as far as is known" in said
+
+
+@pytest.mark.rule("L24")
+def test_what_the_system_refuses_exits_with_2(ends: Ends) -> None:
+    assert ends(OSError(28, "No space left on device")) == (2, "error: No space left on device\n")
+    assert ends(OSError(36, "File name too long", "aaa")) == (2, "error: aaa: File name too long\n")
+
+
+@pytest.mark.rule("L24")
+@pytest.mark.parametrize(
+    ("arguments", "code", "said"),
+    [
+        (["check", "find_and_fetch"], 0, ""),
+        (["--version"], 0, ""),
+        (["check"], 2, "Missing argument 'PLAN'"),
+        (["check", "nowhere"], 2, "error: there is no file or folder nowhere"),
+        (["fly"], 2, "There is no command 'fly'"),
+        (["simulate", "find_and_fetch", "--until", "1"], 1, ""),
+    ],
+)
+def test_exit_codes_are_those_of_the_commands(
+    arguments: list[str], code: int, said: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["rplan", *arguments])
+    with pytest.raises(SystemExit) as caught:
+        cli.main()
+    assert (caught.value.code or 0) == code
+    assert said in capsys.readouterr().err
+
+
+@pytest.mark.rule("L24")
+def test_an_internal_error_inside_a_command_reaches_the_entry_point(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def broken(ways: object) -> None:
+        raise InternalError("no circuit")
+
+    monkeypatch.setattr("rplan.driver.build", broken)
+    monkeypatch.setattr(sys, "argv", ["rplan", "check", str(PLANS / "find_and_fetch")])
+    with pytest.raises(SystemExit) as caught:
+        cli.main()
+    assert caught.value.code == 70
+    assert "InternalError: no circuit" in capsys.readouterr().err
+
+
+def apart(*arguments: str, stdout: int = subprocess.PIPE) -> subprocess.Popen[bytes]:
+    command = [sys.executable, "-c", "from rplan.apps.cli import main; main()"]
+    return subprocess.Popen(
+        [*command, *arguments], stdin=subprocess.PIPE, stdout=stdout, stderr=subprocess.PIPE, env={**os.environ}
+    )
+
+
+def test_a_reader_that_goes_away_is_left_without_a_word() -> None:
+    with apart("list", "--json") as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        process.stdout.close()
+        assert process.stderr.read() == b""
+
+
+@pytest.mark.rule("L22")
+def test_each_line_of_a_tick_is_answered_before_the_next_is_given(tmp_path: Path) -> None:
+    plan = tmp_path / "plan.rplan"
+    plan.write_text("(goalem (when (lost) (do lamp on)))")
+    with apart("tick", str(plan)) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        assert process.stderr is not None
+        for number, lost in enumerate(("true", "false", "true")):
+            process.stdin.write(f'{{"lost": {lost}}}\n'.encode())
+            process.stdin.flush()
+            assert process.stdout.readline().startswith(f'{{"tick": {number}, '.encode())
+        process.stdin.close()
+        process.stderr.read()
+    assert process.returncode == 0
