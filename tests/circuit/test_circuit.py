@@ -84,11 +84,12 @@ def test_share_leaves_to_sweep_what_nobody_reads() -> None:
     assert [cell.op for cell in sweep(shared).cells] == [Op.INPUT]
 
 
-def test_sweep_keeps_inputs_and_what_a_register_that_matters_remembers() -> None:
-    registers = (Register("forgotten", False, 0), Register("toggle", True, 2))
+def test_sweep_keeps_inputs_and_registers() -> None:
+    registers = (Register("unread", False, 0), Register("toggle", True, 2))
     cells = (A, Cell(Op.REGISTER, (), 1), inner(Op.NOT, 1), Cell(Op.REGISTER, (), 0))
     swept = sweep(Circuit("memory", (Port("a"),), registers, cells, ((Port("out"), 1),)))
-    assert swept.registers == (Register("toggle", True, 1),)
+    assert swept.registers == registers
+    assert len(swept.cells) == 3
     assert [port.name for port in swept.inputs] == ["a"]
     now, seen = first_registers(swept), []
     for _ in range(3):
