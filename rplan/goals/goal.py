@@ -63,7 +63,10 @@ class PrioAnd:
 
 @dataclass(frozen=True, slots=True)
 class Reduced:
-    """A subgoal with the body of its rule put in its place; span is the subgoal's, rule_span the rule's."""
+    """A subgoal with the body of its rule put in its place; span is the subgoal's, rule_span the rule's.
+
+    head: canonical text of the subgoal with its arguments.
+    """
 
     head: str
     goal: Goal
@@ -76,7 +79,10 @@ Goal = Do | Anything | If | And | Or | PrioAnd | Reduced
 
 @dataclass(frozen=True, slots=True)
 class Output:
-    """An output channel. idle stands where a tick leaves it open; hold keeps the last value, at first `initial`."""
+    """An output channel. idle stands where a tick leaves it open; hold keeps the last value, at first `initial`.
+
+    required: leaving it open is an error.
+    """
 
     name: str
     type: Type | None
@@ -84,11 +90,12 @@ class Output:
     hold: bool
     initial: Term | None
     span: Span
+    required: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class RuleInfo:
-    """A rule of the text, for those who show it."""
+    """A rule of the text, for those who show it; head with variables as the text has them."""
 
     head: str
     doc: str

@@ -13,11 +13,13 @@ from fractions import Fraction
 from rplan.goals import condition as c
 from rplan.goals import goal as g
 from rplan.goals.dimension import product, quotient
-from rplan.goals.scope import Scope
+from rplan.goals.scope import DEEPEST, LONGEST, Scope
 from rplan.goals.signature import BOOL, COMPETENCE_FAILED, ParameterSignature
+from rplan.goals.substitute import Substitution, has_variables
 from rplan.lang import plan as p
 from rplan.lang.diagnostic import Related
 from rplan.lang.plan import Type
+from rplan.lang.printer import canonical
 from rplan.lang.source import Span
 from rplan.lang.suggest import close
 
@@ -40,41 +42,94 @@ def resolve_condition(condition: p.Condition, scope: Scope, inside: tuple[str, .
             return _comparison(condition, scope)
         case p.Memory():
             return _memory(condition, scope, inside)
-        case p.Call(name, arguments, span) if name in scope.conditions:
-            return _named(name, arguments, span, scope, inside)
+        case p.Call(name) if name in scope.conditions:
+            return _named(condition, scope, inside)
         case p.Call():
             term = _call(condition, scope, BOOL, "condition")
             return c.Percept(term.text, term)
+        case p.OutputIs():
+            return _output_is(condition, scope, inside)
+        case p.Variable():
+            return c.Constant(False)
 
 
-def _named(
-    name: str, arguments: tuple[p.Expression, ...], span: Span, scope: Scope, inside: tuple[str, ...]
-) -> c.Condition:
+def _named(call: p.Call, scope: Scope, inside: tuple[str, ...]) -> c.Condition:
+    name, span = call.name, call.span
     scope.used[("condition", name)] = None
     definition = scope.conditions[name]
-    if arguments:
+    if len(call.arguments) != len(definition.parameters):
+        takes, given = _count(len(definition.parameters)), len(call.arguments)
         scope.findings.add(
-            "error", "wrong-arity", f"the condition `{name}` takes no arguments", span,
+            "error", "wrong-arity", f"the condition `{name}` takes {takes}, here {_are(given)}", span,
             related=[Related("defined here", definition.span)],
         )  # fmt: skip
-    if name in inside and _DELAY in inside[inside.index(name) :]:
-        scope.recursive[name] = None
-        return c.Named(name)
-    if name in inside:
-        _circle(inside[inside.index(name) :], span, scope)
         return c.Constant(False)
-    return resolve_condition(definition.condition, scope, (*inside, name))
+    key = " ".join((name, *map(canonical, call.arguments)))
+    if key in inside and _DELAY in inside[inside.index(key) :]:
+        scope.recursive[key] = call
+        return c.Named(key)
+    if key in inside:
+        _circle(inside[inside.index(key) :], span, scope)
+        return c.Constant(False)
+    if scope.endless or len(inside) > DEEPEST or len(key) > LONGEST:
+        _too_deep(name, span, scope)
+        return c.Constant(False)
+    return resolve_condition(_definition(call, scope), scope, (*inside, key))
 
 
-def _circle(names: tuple[str, ...], span: Span, scope: Scope) -> None:
+def _definition(call: p.Call, scope: Scope) -> p.Condition:
+    """What a named condition says of these arguments."""
+    definition = scope.conditions[call.name]
+    if not definition.parameters:
+        return definition.condition
+    arguments = dict(zip(definition.parameters, call.arguments, strict=True))
+    return Substitution(arguments, scope.findings).condition(definition.condition)
+
+
+def _too_deep(name: str, span: Span, scope: Scope) -> None:
+    if not scope.endless:
+        message = f"the condition `{name}` is nested deeper than {DEEPEST} conditions"
+        scope.findings.add("error", "too-deep", message, span, hint="its arguments grow each time")
+    scope.endless = True
+
+
+def _circle(keys: tuple[str, ...], span: Span, scope: Scope) -> None:
     """Report a circle once, as it looks from the condition of it that is defined first."""
+    names = [key.split(" ", 1)[0] for key in keys]
     if names[0] == next(name for name in scope.conditions if name in names):
-        path = " → ".join((*names, names[0]))
+        path = " → ".join((*keys, keys[0]))
         related = [Related(f"`{name}` is defined here", scope.conditions[name].span) for name in names]
         scope.findings.add(
-            "error", "condition-circle", f"`{names[0]}` depends on itself within one tick: {path}", span,
+            "error", "condition-circle", f"`{keys[0]}` depends on itself within one tick: {path}", span,
             related=related,
         )  # fmt: skip
+
+
+def _output_is(asked: p.OutputIs, scope: Scope, inside: tuple[str, ...]) -> c.Condition:
+    """A question for an output, or what it turns out to be where there is no such output."""
+    if asked.output in scope.channels:
+        return _asked_output(asked, scope)
+    called = p.Call(asked.output, (), asked.span)
+    if asked.value is None and "open" in (*scope.functions, *scope.conditions):
+        return resolve_condition(p.Call("open", (called,), asked.span), scope, inside)
+    if asked.value is None or isinstance(asked.value, p.Truth) or close(asked.output, scope.channels):
+        meant = close(asked.output, scope.channels)
+        known = " ".join(f"`{name}`" for name in scope.channels) or "none"
+        hint = f"did you mean `{meant}`?" if meant else f"there are: {known}"
+        scope.findings.add("error", "no-output", f"no output is called `{asked.output}`", asked.span, hint=hint)
+        return c.Constant(False)
+    return resolve_condition(p.Compare("=", called, asked.value, asked.span), scope, inside)
+
+
+def _asked_output(asked: p.OutputIs, scope: Scope) -> c.Condition:
+    if scope.asks == "percepts":
+        scope.findings.add(
+            "error", "asks-output", f"an assumption asks percepts alone; `{asked.output}` is an output", asked.span,
+            hint="what outputs must be is said by `defproperty`",
+        )  # fmt: skip
+    if asked.value is None:
+        return c.OutputIs(asked.output, None)
+    return c.OutputIs(asked.output, resolve_value(asked.value, scope.channels[asked.output], scope).text)
 
 
 def _memory(memory: p.Memory, scope: Scope, inside: tuple[str, ...]) -> c.Memory:
@@ -106,7 +161,7 @@ def _comparison(compare: p.Compare, scope: Scope) -> c.Comparison:
     left = _number(compare.left, scope)
     right = _number(compare.right, scope)
     for term, other in ((left, right), (right, left)):
-        if term.type is None:
+        if term.type is None and term.kind == "call":
             scope.take_for(term.name, Type("number", _unit(other)), term.span)
     left, right = _same_unit(left, right, compare.span, scope)
     return c.Comparison(f"({compare.operator} {left.text} {right.text})", compare.operator, left, right)
@@ -117,12 +172,19 @@ def _number(expression: p.Quantity, scope: Scope) -> c.Term:
         return _literal(expression)
     if isinstance(expression, p.Arithmetic):
         return _arithmetic(expression, scope)
+    if isinstance(expression, p.Variable):
+        return _stand_in(expression, None)
     term = _call(expression, scope, None, "number")
     if term.type is not None and term.type.name != "number":
         scope.findings.add(
             "error", "type-mismatch", f"`{term.text}` is of type {term.type}; a number is wanted", expression.span
         )
     return term
+
+
+def _stand_in(variable: p.Variable, wanted: Type | None) -> c.Term:
+    """For a variable of a rule or condition that nothing asks for, whose body is checked all the same."""
+    return c.Term("symbol", f"?{variable.name}", (), None, wanted, variable.span)
 
 
 def _unit(term: c.Term) -> str:
@@ -175,10 +237,11 @@ def _literal(number: p.Number) -> c.Term:
 def resolve_definitions(scope: Scope) -> dict[str, c.Condition]:
     """What the named conditions stand for that were found to ask their own past."""
     found: dict[str, c.Condition] = {}
-    while missing := [name for name in scope.recursive if name not in found]:
-        for name in missing:
-            found[name] = resolve_condition(scope.conditions[name].condition, scope, (name,))
-    return found
+    while missing := [key for key in scope.recursive if key not in found]:
+        for key in missing:
+            found[key] = resolve_condition(_definition(scope.recursive[key], scope), scope, (key,))
+    general = [key for key, call in scope.recursive.items() if has_variables(call)]
+    return {key: condition for key, condition in found.items() if key not in general}
 
 
 def resolve_value(value: p.Expression, wanted: Type | None, scope: Scope) -> c.Term:
@@ -192,7 +255,22 @@ def resolve_value(value: p.Expression, wanted: Type | None, scope: Scope) -> c.T
             return c.Term("symbol", name, (), None, wanted, span)
         case p.Call():
             term = _call(value, scope, wanted, "value")
+        case p.Variable():
+            return _stand_in(value, wanted)
     return _fitting(term, wanted, scope)
+
+
+def _argument(argument: p.Argument, wanted: Type | None, scope: Scope) -> c.Term:
+    """An argument of a function: a value."""
+    match argument:
+        case p.Number() | p.Truth() | p.Call() | p.Variable():
+            return resolve_value(argument, wanted, scope)
+        case _:
+            scope.findings.add(
+                "error", "misplaced-form", f"`{canonical(argument)}` is no value; a function takes values",
+                argument.span, hint="goals and named conditions with variables may take conditions",
+            )  # fmt: skip
+            return c.Term("truth", "", (), False, wanted, argument.span)
 
 
 def _fitting(term: c.Term, wanted: Type | None, scope: Scope) -> c.Term:
@@ -228,7 +306,7 @@ def _call(call: p.Call, scope: Scope, wanted: Type | None, what: str) -> c.Term:
         if len(function.parameters) != len(call.arguments):
             scope.findings.add(
                 "error", "wrong-arity",
-                f"`{call.name}` takes {_count(len(function.parameters))}, here are {len(call.arguments)}", call.span,
+                f"`{call.name}` takes {_count(len(function.parameters))}, here {_are(len(call.arguments))}", call.span,
             )  # fmt: skip
         else:
             parameters = function.parameters
@@ -237,8 +315,7 @@ def _call(call: p.Call, scope: Scope, wanted: Type | None, what: str) -> c.Term:
                 "error", "type-mismatch", f"`{call.name}` is of type {kind}; a condition is a bool", call.span
             )
     arguments = tuple(
-        resolve_value(argument, parameter, scope)
-        for argument, parameter in zip(call.arguments, parameters, strict=True)
+        _argument(argument, parameter, scope) for argument, parameter in zip(call.arguments, parameters, strict=True)
     )
     if call.name == COMPETENCE_FAILED.name and len(arguments) == 1:
         _known_competence(arguments[0], scope)
@@ -247,6 +324,10 @@ def _call(call: p.Call, scope: Scope, wanted: Type | None, what: str) -> c.Term:
 
 def _count(number: int) -> str:
     return "no arguments" if number == 0 else "1 argument" if number == 1 else f"{number} arguments"
+
+
+def _are(number: int) -> str:
+    return "is 1" if number == 1 else f"are {number}"
 
 
 def _known_competence(argument: c.Term, scope: Scope) -> None:
@@ -266,7 +347,7 @@ def resolve_outputs(plan: p.Plan, scope: Scope, top: g.Goal | None) -> tuple[g.O
         d.name: g.Output(
             d.name, d.type,
             None if d.idle is None else resolve_value(d.idle, d.type, scope), d.hold,
-            None if d.initial is None else resolve_value(d.initial, d.type, scope), d.span,
+            None if d.initial is None else resolve_value(d.initial, d.type, scope), d.span, d.required,
         )
         for d in plan.outputs
     }  # fmt: skip
@@ -307,6 +388,6 @@ def _setting(setting: p.Setting, parameter: ParameterSignature, scope: Scope) ->
             return term.value
         case p.Call(name, ()) if parameter.type.name == "symbol":
             return name
-        case p.Call(span=span):
+        case p.Call(span=span) | p.Variable(span=span):
             scope.findings.add("error", "type-mismatch", f"`:{setting.name}` wants {parameter.type}", span)
             return None

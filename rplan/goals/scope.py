@@ -8,12 +8,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import Literal
 
 from rplan.goals.signature import COMPETENCE_FAILED, FunctionSignature, Libraries, LibrarySignature
 from rplan.lang.diagnostic import Diagnostic, Related, Severity
-from rplan.lang.plan import NamedCondition, OutputDeclaration, Plan, Rule, Type
+from rplan.lang.plan import Call, NamedCondition, OutputDeclaration, Plan, Rule, Type
+from rplan.lang.printer import print_head
 from rplan.lang.source import Span
 from rplan.lang.suggest import close
+
+Asks = Literal["nothing", "outputs", "percepts"]
+"""What the condition at hand may ask of this tick: in a property outputs, in an assumption percepts alone."""
+
+DEEPEST = 1_000
+"""Rules inside rules and named conditions inside named conditions, at most (L17)."""
+LONGEST = 10_000
+"""Letters of the canonical text of a goal or of a named condition with its arguments, at most."""
 
 
 @dataclass(slots=True)
@@ -46,7 +56,11 @@ class Findings:
 
 @dataclass(slots=True)
 class Scope:
-    """The tables of names of one plan, one a name space, and which of them have been used."""
+    """The tables of names of one plan, one a name space, and which of them have been used.
+
+    recursive: named conditions that ask their own past, by their text. asks: whether outputs may be asked here.
+    endless: something went so deep that what is around it is not followed any further.
+    """
 
     functions: dict[str, FunctionSignature]
     outputs: dict[str, OutputDeclaration]
@@ -56,10 +70,13 @@ class Scope:
     findings: Findings
     strict: bool
     period: float
-    recursive: dict[str, None] = field(default_factory=dict)
+    recursive: dict[str, Call] = field(default_factory=dict)
     used: dict[tuple[str, str], None] = field(default_factory=dict)
     unknown: dict[tuple[str, str], None] = field(default_factory=dict)
     taken: dict[str, tuple[Type, Span]] = field(default_factory=dict)
+    channels: dict[str, Type | None] = field(default_factory=dict)
+    asks: Asks = "nothing"
+    endless: bool = False
 
     def function(self, name: str, span: Span, what: str) -> FunctionSignature | None:
         """The function of this name; an unknown one is noted once, a close one is an error."""
@@ -156,9 +173,9 @@ def report_unused(plan: Plan, scope: Scope) -> None:
         if ("condition", condition.name) not in used:
             scope.findings.add("warning", "unused", f"the condition `{condition.name}` is not used", condition.span)
     for rule in plan.rules:
-        if plan.top is not None and ("rule", f"({rule.kind} {rule.name})") not in used:
+        if plan.top is not None and ("rule", print_head(rule)) not in used:
             scope.findings.add(
-                "warning", "unused", f"no goal that is reached asks for `({rule.kind} {rule.name})`", rule.head_span
+                "warning", "unused", f"no goal that is reached asks for `{print_head(rule)}`", rule.head_span
             )
     for use in plan.uses:
         library = scope.libraries.get(use.library)

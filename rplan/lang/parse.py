@@ -1,4 +1,4 @@
-"""Forms to a `Plan` (the table of the top level, L8, L9, L12-L17 without parameters).
+"""Forms to a `Plan` (the table of the top level, L8, L9, L12-L17, L20).
 
 Takes: forms and the source they come from. Gives: a `Plan` and warnings, or every error at once. Leaves alone: whether
 names exist and types fit.
@@ -10,7 +10,7 @@ an error is thrown away at the end.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import PurePath
@@ -19,18 +19,24 @@ from typing import Literal, TypeVar
 from rplan.lang.depth import MAX_LEVELS, deep_recursion
 from rplan.lang.diagnostic import Diagnostic, PlanError, Related
 from rplan.lang.plan import (
+    Achieve,
     AllOf,
     And,
     AnyOf,
     Anything,
+    Argument,
     Arithmetic,
+    ArithmeticOperator,
+    Assumption,
     Call,
     Comparator,
     Compare,
     Condition,
     Declaration,
     Do,
+    Expected,
     Expression,
+    Given,
     Goal,
     Header,
     If,
@@ -41,18 +47,23 @@ from rplan.lang.plan import (
     Operator,
     Or,
     OutputDeclaration,
+    OutputIs,
     Past,
     Plan,
+    PlanTest,
     PrioAnd,
+    Property,
     Quantity,
     Rule,
     Setting,
+    Step,
     Subgoal,
     TopGoal,
     Truth,
     Type,
     Use,
 )
+from rplan.lang.plan import Variable as Parameter
 from rplan.lang.reader import (
     TOP_FORMS,
     Broken,
@@ -75,7 +86,7 @@ COMPARATORS: tuple[Comparator, ...] = ("<", "<=", ">", ">=", "=", "/=")
 MEMORY_FORMS: tuple[Past, ...] = (
     "delay", "once", "historically", "since", "latch", "rose", "fell", "held-for", "within", "at-least",
 )  # fmt: skip
-OPERATORS: tuple[Operator, ...] = ("+", "-", "*", "/", "min", "max", "abs")
+OPERATORS: tuple[ArithmeticOperator, ...] = ("+", "-", "*", "/", "min", "max", "abs")
 CONDITION_FORMS = ("not", "and", "or", *COMPARATORS, *MEMORY_FORMS)
 TYPES = ("bool", "number", "pose", "command", "symbol")
 DEFAULT_PERIOD = 0.1
@@ -89,16 +100,21 @@ _TAKES = {
     "use": "the name of a library and its parameters",
     "declare": "`(NAME (ARGUMENT TYPE)...)`, a type and perhaps a text",
     "defoutput": "a name and a type",
-    "defcond": "`(NAME)`, perhaps a text, and a condition",
-    "defgoalr": "`(ach NAME)` or `(maint NAME)`, perhaps a text, and a goal",
+    "defcond": "`(NAME ?ARG...)`, perhaps a text, and a condition",
+    "defgoalr": "`(ach NAME ARG...)` or `(maint NAME ARG...)`, perhaps a text, and a goal",
+    "defop": "`(NAME ?ARG...)`, perhaps a text, and `:do`, `:pre`, `:add`, `:del`",
+    "defproperty": "a name, perhaps a text, `:always CONDITION` and perhaps `:provided CONDITION`",
+    "assume": "a condition",
+    "deftest": "a name, perhaps a text, and one or more steps `(tick ...)`",
+    "tick": "`:times`, `:given`, `:expect` and `:hole`, and nothing else",
     "goalem": "a goal",
     "goallem": "a goal",
     "do": "an output and a value, or is `(do anything)`",
     "if": "a condition, a goal and an else goal",
     "when": "a condition and a goal",
     "cond": "one or more clauses `(CONDITION GOAL)`, at last perhaps `(else GOAL)`",
-    "ach": "the name of a goal",
-    "maint": "the name of a goal",
+    "ach": "the name of a goal and its arguments, or a condition",
+    "maint": "the name of a goal and its arguments",
     "not": "a condition",
     "delay": "a first value (`true` or `false`) and a condition",
     "once": "a condition",
@@ -122,7 +138,7 @@ _HINTS = {
 
 Kind = Literal["ach", "maint"]
 Parsed = TypeVar("Parsed")
-Named = TypeVar("Named", Use, Declaration, OutputDeclaration, NamedCondition)
+Named = TypeVar("Named", Use, Declaration, OutputDeclaration, NamedCondition, Operator, Property, PlanTest)
 
 
 def parse(forms: Sequence[Form], source: Source) -> tuple[Plan, tuple[Diagnostic, ...]]:
@@ -162,12 +178,15 @@ class _Option:
 class _Parser:
     """Each method takes a form, notes what is wrong with it in `found`, and gives what it says or a placeholder.
 
-    level: how many parentheses are open around the printed text of what is parsed.
+    level: how many parentheses are open around the printed text of what is parsed. bound: the variables of the head
+    whose body is parsed. of_outputs: whether conditions may ask outputs here.
     """
 
     def __init__(self, source: Source) -> None:
         self.source = source
         self.found: list[Diagnostic] = []
+        self.bound: tuple[str, ...] = ()
+        self.of_outputs = False
 
     def error(self, code: str, message: str, span: Span, hint: str = "", related: tuple[Related, ...] = ()) -> None:
         self.found.append(Diagnostic(code, "error", message, span, related, hint))
@@ -198,6 +217,10 @@ class _Parser:
             every(self.rule, "defgoalr"),
             tops[0] if tops else None,
             start,
+            self._distinct("operator", [(one.name, one) for one in every(self.operator, "defop")]),
+            self._distinct("property", [(one.name, one) for one in every(self.property, "defproperty")]),
+            every(self.assumption, "assume"),
+            self._distinct("test", [(one.name, one) for one in every(self.test, "deftest")]),
         )
 
     def _strays(self, heads: Sequence[tuple[str | None, Form]]) -> None:
@@ -327,11 +350,12 @@ class _Parser:
         return Type("number")
 
     def output(self, form: ListForm) -> OutputDeclaration:
-        rest, options = self._split(form.items[1:], ("idle", "hold", "initial"), flags=("hold",))
+        rest, options = self._split(form.items[1:], ("idle", "hold", "initial", "required"), flags=("hold", "required"))
         name, kind = "", Type("bool")
         if self._count("defoutput", form, rest, 2):
             name, kind = self._new_name(rest[0], "an output"), self._type(rest[1])
         hold, idle, initial = options.get("hold"), options.get("idle"), options.get("initial")
+        self._outdone(options.get("required"), idle or hold)
         if hold and idle:
             message = "`:idle` and `:hold` exclude each other"
             related = (Related("`:hold` is here", hold.keyword.span),)
@@ -342,7 +366,16 @@ class _Parser:
             self.error("bad-option", "`:initial` goes with `:hold`", initial.keyword.span)
         elif initial and not hold:
             self.error("bad-option", "`:initial` goes with `:hold`, not with `:idle`", initial.keyword.span)
-        return OutputDeclaration(name, kind, self._value_of(idle), hold is not None, self._value_of(initial), form.span)
+        required = "required" in options
+        idle_value, initial_value = self._value_of(idle), self._value_of(initial)
+        return OutputDeclaration(name, kind, idle_value, hold is not None, initial_value, form.span, required)
+
+    def _outdone(self, required: _Option | None, other: _Option | None) -> None:
+        if required and other:
+            word = f"`:{other.keyword.name}`"
+            message = f"`:required` lets no tick leave it open, so that {word} says nothing"
+            related = (Related(f"{word} is here", other.keyword.span),)
+            self.error("bad-option", message, required.keyword.span, "leave one of them out", related)
 
     def _value_of(self, option: _Option | None) -> Expression | None:
         return self.expression(option.value) if option and option.value else None
@@ -350,29 +383,50 @@ class _Parser:
     def named_condition(self, form: ListForm) -> NamedCondition:
         head, doc, rest = self._head_doc_body(form)
         if not self._count("defcond", form, rest, 2):
-            return NamedCondition("", doc, Truth(False, form.span), form.span)
+            return NamedCondition("", (), doc, Truth(False, form.span), form.span)
+        name, parameters = self._signature(head, "a condition")
+        return NamedCondition(name, parameters, doc, self._body(rest[1], parameters, self.condition), form.span)
+
+    def _signature(self, head: Form, owner: str) -> tuple[str, tuple[str, ...]]:
+        """`(NAME ?ARG...)` or `NAME`: the name, and the variables without their question marks."""
         match head:
-            case ListForm(items=(first,)):
-                name = self._new_name(first, "a condition")
-            case ListForm(items=(_, Variable() as second, *_)):
-                self._variable(second)
-                name = ""
-            case ListForm(items=(_, second, *_)):
-                self._unexpected(second, "nothing, for conditions have no parameters", "wrong-parts")
-                name = ""
+            case ListForm(items=(first, *rest)):
+                variables = [one for one in rest if isinstance(one, Variable)]
+                for one in rest:
+                    if not isinstance(one, Variable):
+                        self._unexpected(one, "a variable such as `?place`", "wrong-parts")
+                self._distinct_variables(variables)
+                return self._new_name(first, owner), tuple(variable.name for variable in variables)
             case ListForm():
-                self._no_head(head, "a condition")
-                name = ""
+                self._no_head(head, owner)
+                return "", ()
             case _:
-                name = self._new_name(head, "a condition")
-        return NamedCondition(name, doc, self.condition(rest[1]), form.span)
+                return self._new_name(head, owner), ()
+
+    def _distinct_variables(self, variables: Sequence[Variable]) -> None:
+        seen: dict[str, Span] = {}
+        for variable in variables:
+            if variable.name in seen:
+                first = _first(seen[variable.name])
+                self.error("duplicate", f"the variable `?{variable.name}` is there twice", variable.span, "", first)
+            seen.setdefault(variable.name, variable.span)
+
+    def _body(self, form: Form, parameters: tuple[str, ...], parse_one: Callable[[Form], Parsed]) -> Parsed:
+        """What a definition with these variables says."""
+        self.bound = parameters
+        try:
+            return parse_one(form)
+        finally:
+            self.bound = ()
 
     def rule(self, form: ListForm) -> Rule:
         head, doc, rest = self._head_doc_body(form)
         if not self._count("defgoalr", form, rest, 2):
-            return Rule("ach", "", doc, Anything(form.span), head.span, form.span)
-        kind, name = self._rule_head(head)
-        return Rule(kind, name, doc, self.goal(rest[1], 2), head.span, form.span)
+            return Rule("ach", "", (), doc, Anything(form.span), head.span, form.span)
+        kind, name, parameters = self._rule_head(head)
+        variables = tuple(one.name for one in parameters if isinstance(one, Parameter))
+        goal = self._body(rest[1], variables, lambda body: self.goal(body, 2))
+        return Rule(kind, name, parameters, doc, goal, head.span, form.span)
 
     def _head_doc_body(self, form: ListForm) -> tuple[Form, str, tuple[Form, ...]]:
         """What a definition defines, its text, and all parts without that text."""
@@ -381,15 +435,157 @@ class _Parser:
             return rest[0], rest[1].value, (rest[0], *rest[2:])
         return rest[0] if rest else form, "", rest
 
-    def _rule_head(self, form: Form) -> tuple[Kind, str]:
+    def _rule_head(self, form: Form) -> tuple[Kind, str, tuple[Argument, ...]]:
+        """kind, name and parameters; a variable is a parameter, everything else is parsed without variables."""
         match form:
-            case ListForm(items=(Symbol(name="ach" | "maint" as kind), *_)):
-                subgoal = self._subgoal(form, "ach" if kind == "ach" else "maint")
-                return subgoal.kind, subgoal.name
+            case ListForm(items=(Symbol(name="ach" | "maint" as kind), *rest)):
+                name, parts = self._named_parts(kind, form, rest)
+                self._distinct_variables([part for part in parts if isinstance(part, Variable)])
+                parameters = tuple(
+                    Parameter(part.name, part.span) if isinstance(part, Variable) else self.argument(part)
+                    for part in parts
+                )
+                return "ach" if kind == "ach" else "maint", name, parameters
             case _:
                 hint = "rules are for `(ach NAME)` or `(maint NAME)`"
                 self._unexpected(form, "`(ach NAME)` or `(maint NAME)`", "bad-head", hint)
-                return "ach", ""
+                return "ach", "", ()
+
+    def _named_parts(self, kind: str, form: ListForm, rest: Sequence[Form]) -> tuple[str, Sequence[Form]]:
+        """Name and arguments of `(ach NAME ARG...)` and `(ach (NAME ARG...))`."""
+        match rest:
+            case (ListForm(items=(Symbol(name=name, span=span), *arguments)),):
+                if name in _RESERVED:
+                    self.error("misplaced-form", f"`{name}` is {_what_is(name)}; here a goal is named", span)
+                    return "", ()
+                return name, arguments
+            case (name_form, *arguments):
+                return self._name(name_form, "a goal"), arguments
+            case _:
+                self._count(kind, form, rest, 1)
+                return "", ()
+
+    def operator(self, form: ListForm) -> Operator:
+        rest, options = self._split(form.items[1:], ("do", "pre", "add", "del"))
+        doc, rest = self._without_doc(rest, 1)
+        counted = self._count("defop", form, rest, 1)
+        name, parameters = self._signature(rest[0], "an operator") if counted else ("", ())
+        if "do" not in options:
+            self.error("wrong-parts", "an operator says what it does: `:do (OUTPUT VALUE)`", form.span)
+        output, value = self._part(options, "do", parameters, self._assignment) or ("", Truth(False, form.span))
+        pre = self._part(options, "pre", parameters, self.condition)
+        adds = self._part(options, "add", parameters, self._facts) or ()
+        deletes = self._part(options, "del", parameters, self._facts) or ()
+        if "add" not in options and "del" not in options:
+            self.error("wrong-parts", "an operator says what it changes: `:add (FACT...)`, `:del (FACT...)`", form.span)
+        head = rest[0].span if rest else form.span
+        return Operator(
+            name, parameters, doc, output, value, pre or Truth(True, form.span), adds, deletes, head, form.span
+        )
+
+    def _part(
+        self, options: Mapping[str, _Option], name: str, bound: tuple[str, ...], parse_one: Callable[[Form], Parsed]
+    ) -> Parsed | None:
+        """The value of an option, None where there is none."""
+        option = options.get(name)
+        return self._body(option.value, bound, parse_one) if option and option.value else None
+
+    def _assignment(self, form: Form) -> tuple[str, Expression]:
+        match form:
+            case ListForm(items=(output, value)):
+                return self._name(output, "an output"), self.expression(value)
+            case _:
+                self._unexpected(form, "`(OUTPUT VALUE)`", "wrong-parts")
+                return "", Truth(False, form.span)
+
+    def _facts(self, form: Form) -> tuple[Call, ...]:
+        if not isinstance(form, ListForm):
+            self._unexpected(form, "a list of facts `(FACT...)`", "wrong-parts")
+            return ()
+        return tuple(call for one in form.items if (call := self._fact(one)))
+
+    def _fact(self, form: Form) -> Call | None:
+        match form:
+            case Symbol(name=name) | ListForm(items=(Symbol(name=name), *_)):
+                return self._call(form, name, "fact")
+            case _:
+                self._unexpected(form, "a fact", "not-a-condition")
+                return None
+
+    def property(self, form: ListForm) -> Property:
+        rest, options = self._split(form.items[1:], ("always", "provided"))
+        doc, rest = self._without_doc(rest, 1)
+        name = self._name(rest[0], "a property") if self._count("defproperty", form, rest, 1) else ""
+        if "always" not in options:
+            self.error("wrong-parts", "a property says what must hold: `:always CONDITION`", form.span)
+        always = self._part(options, "always", (), self._claim)
+        provided = self._part(options, "provided", (), self._claim)
+        return Property(name, doc, always or Truth(True, form.span), provided, form.span)
+
+    def assumption(self, form: ListForm) -> Assumption:
+        rest = form.items[1:]
+        condition = self._claim(rest[0]) if self._count("assume", form, rest, 1) else Truth(True, form.span)
+        return Assumption(condition, form.span)
+
+    def _claim(self, form: Form) -> Condition:
+        """A condition that may ask outputs."""
+        self.of_outputs = True
+        try:
+            return self.condition(form)
+        finally:
+            self.of_outputs = False
+
+    def test(self, form: ListForm) -> PlanTest:
+        doc, rest = self._without_doc(form.items[1:], 1)
+        name = self._name(rest[0], "a test") if self._count("deftest", form, rest, 2, None) else ""
+        return PlanTest(name, doc, tuple(step for one in rest[1:] if (step := self._step(one))), form.span)
+
+    def _step(self, form: Form) -> Step | None:
+        match form:
+            case ListForm(items=(Symbol(name="tick"), *items)):
+                rest, options = self._split(items, ("times", "given", "expect", "hole"))
+                self._count("tick", form, rest, 0)
+            case _:
+                self._unexpected(form, "a step `(tick ...)`", "wrong-parts")
+                return None
+        times = self._part(options, "times", (), lambda value: self._whole(value, "`:times` counts ticks"))
+        given = self._part(options, "given", (), lambda value: self._pairs(value, self._given)) or ()
+        expected = self._part(options, "expect", (), lambda value: self._pairs(value, self._expected)) or ()
+        hole = self._part(options, "hole", (), self._truth)
+        return Step(times or 1, given, expected, bool(hole), form.span)
+
+    def _pairs(self, form: Form, parse_one: Callable[[ListForm], Parsed | None]) -> tuple[Parsed, ...]:
+        if not isinstance(form, ListForm):
+            self._unexpected(form, "a list of pairs", "wrong-parts")
+            return ()
+        found: list[Parsed] = []
+        for one in form.items:
+            if not isinstance(one, ListForm) or len(one.items) != 2:
+                self._unexpected(one, "a pair of a name and a value", "wrong-parts")
+            elif (parsed := parse_one(one)) is not None:
+                found.append(parsed)
+        return tuple(found)
+
+    def _given(self, form: ListForm) -> Given | None:
+        percept, value = form.items
+        called = self._fact(percept)
+        match value:
+            case Symbol(name="true" | "false" as truth):
+                given: Number | Truth = Truth(truth == "true", value.span)
+            case Numeral(value=number, unit=unit):
+                given = Number(number, unit, value.span)
+            case _:
+                self._unexpected(value, "`true`, `false` or a number", "bad-value")
+                return None
+        return Given(called, given, form.span) if called else None
+
+    def _expected(self, form: ListForm) -> Expected:
+        output, value = form.items
+        match value:
+            case Symbol(name="open"):
+                return Expected(self._name(output, "an output"), None, form.span)
+            case _:
+                return Expected(self._name(output, "an output"), self.expression(value), form.span)
 
     def top_goal(self, form: ListForm) -> TopGoal:
         head = _head(form) or "goalem"
@@ -512,17 +708,14 @@ class _Parser:
             return And(goals, form.span)
         return Or(goals, form.span) if head == "or" else PrioAnd(goals, form.span)
 
-    def _subgoal(self, form: ListForm, kind: Kind) -> Subgoal:
-        rest = form.items[1:]
-        variable = next((one for one in rest if isinstance(one, Variable)), None)
-        if variable:
-            self._variable(variable)
-            return Subgoal(kind, "", form.span)
-        if len(rest) > 1:
-            message = f"`{kind}` takes the name of a goal; goals have no parameters"
-            self.error("wrong-parts", message, _join(rest[1].span, rest[-1].span))
-            return Subgoal(kind, "", form.span)
-        return Subgoal(kind, self._name(rest[0], "a goal") if self._count(kind, form, rest, 1) else "", form.span)
+    def _subgoal(self, form: ListForm, kind: Kind) -> Goal:
+        rest, options = self._split(form.items[1:], ("depth",) if kind == "ach" else ())
+        depth = self._part(options, "depth", self.bound, lambda value: self._whole(value, "`:depth` counts steps"))
+        match rest:
+            case (ListForm(items=(Symbol(name=head), *_)),) if head in CONDITION_FORMS and kind == "ach":
+                return Achieve(self.condition(rest[0]), form.span, depth)
+        name, parts = self._named_parts(kind, form, rest)
+        return Subgoal(kind, name, tuple(self.argument(part) for part in parts), form.span, depth)
 
     # --- conditions and values ---
 
@@ -530,6 +723,8 @@ class _Parser:
         match form:
             case Symbol(name="true" | "false" as name):
                 return Truth(name == "true", form.span)
+            case Variable():
+                return self._parameter_here(form)
             case Symbol(name=name) | ListForm(items=(Symbol(name=name), *_)):
                 pass
             case ListForm():
@@ -538,10 +733,25 @@ class _Parser:
             case _:
                 self._unexpected(form, "a condition", "not-a-condition")
                 return Truth(False, form.span)
+        if self.of_outputs and isinstance(form, ListForm) and (asked := self._of_output(form)):
+            return asked
         if isinstance(form, ListForm) and name in CONDITION_FORMS:
             return self._compound(form, name)
         called = self._call(form, name, "condition")
         return called if called else Truth(False, form.span)
+
+    def _of_output(self, form: ListForm) -> Condition | None:
+        """`(= OUTPUT VALUE)`, `(/= OUTPUT VALUE)` or `(open OUTPUT)`, by the look of it."""
+        match form.items:
+            case (Symbol(name="open"), Symbol(name=output)):
+                return OutputIs(output, None, form.span)
+            case (Symbol(name="=" | "/=" as comparator), Symbol(name=output), value) if output not in _RESERVED:
+                if isinstance(value, ListForm) and _head(value) in OPERATORS:
+                    return None
+                asked = OutputIs(output, self.expression(value), form.span)
+                return asked if comparator == "=" else Not(asked, form.span)
+            case _:
+                return None
 
     def _compound(self, form: ListForm, head: str) -> Condition:
         rest = form.items[1:]
@@ -576,7 +786,7 @@ class _Parser:
                 reset = options.get("reset")
                 conditions = [self.condition(rest[1])]
                 conditions += [self.condition(reset.value)] if reset and reset.value else []
-                return Memory(head, tuple(conditions), form.span, count=self._ticks(rest[0]))
+                return Memory(head, tuple(conditions), form.span, count=self._whole(rest[0], "`at-least` counts ticks"))
             case _:
                 return Memory(head, tuple(self.condition(one) for one in rest), form.span)
 
@@ -607,14 +817,13 @@ class _Parser:
         message = f"`{form.text}` has no unit; it is taken as seconds"
         self.found.append(Diagnostic("bare-number", "warning", message, form.span, hint=f"write `{form.text}s`"))
 
-    def _ticks(self, form: Form) -> int:
+    def _whole(self, form: Form, counts: str) -> int:
         if isinstance(form, Numeral) and not form.unit and form.value >= 1 and form.value == int(form.value):
             return int(form.value)
         if isinstance(form, Numeral):
-            message = f"`at-least` counts ticks: a whole number from 1 up, not `{form.text}`"
-            self.error("bad-value", message, form.span)
+            self.error("bad-value", f"{counts}: a whole number from 1 up, not `{form.text}`", form.span)
         else:
-            self._unexpected(form, "a number of ticks", "bad-value")
+            self._unexpected(form, "a whole number from 1 up", "bad-value")
         return 1
 
     def _compare(self, form: ListForm, comparator: Comparator) -> Condition:
@@ -631,7 +840,7 @@ class _Parser:
             case Symbol(name="true" | "false"):
                 hint = "a condition is itself true or false; `(not C)` turns it round"
                 self._unexpected(form, "a number", "not-a-number", hint)
-            case Numeral() | Symbol() | ListForm():
+            case Numeral() | Symbol() | ListForm() | Variable():
                 value = self.expression(form)
                 if not isinstance(value, Truth):
                     return value
@@ -651,8 +860,20 @@ class _Parser:
             return Arithmetic(operator, tuple(self._operand(one) for one in rest), form.span)
         return Number(0.0, "", form.span)
 
+    def argument(self, form: Form) -> Argument:
+        """What is put in the place of a variable: a value, a condition, or a number that is worked out."""
+        match form:
+            case ListForm(items=(Symbol(name=name), *rest)) if name in OPERATORS:
+                return self._arithmetic(form, name, rest)
+            case ListForm(items=(Symbol(name=name), *_)) if name in CONDITION_FORMS:
+                return self.condition(form)
+            case _:
+                return self.expression(form)
+
     def expression(self, form: Form) -> Expression:
         match form:
+            case Variable():
+                return self._parameter_here(form)
             case Numeral(value=value, unit=unit):
                 return Number(value, unit, form.span)
             case Symbol(name="true" | "false" as name):
@@ -669,8 +890,9 @@ class _Parser:
     def _call(self, form: Form, name: str, wanted: str) -> Call | None:
         """A call of `name`, None where the name is a word of the language."""
         if name not in _RESERVED:
-            arguments = form.items[1:] if isinstance(form, ListForm) else ()
-            return Call(name, tuple(self.expression(one) for one in arguments), form.span)
+            parts = form.items[1:] if isinstance(form, ListForm) else ()
+            one_argument = self.argument if wanted == "condition" else self.expression
+            return Call(name, tuple(one_argument(part) for part in parts), form.span)
         if name in OPERATORS:
             hint = "compare numbers with `<`, `<=`, `>`, `>=`, `=` or `/=`"
             self.error("misplaced-form", f"`{name}` makes a number; here a {wanted} is expected", form.span, hint)
@@ -764,8 +986,18 @@ class _Parser:
                 self.error(code, f"here stands {_describe(form)}, expected is {wanted}", form.span, hint)
 
     def _variable(self, variable: Variable) -> None:
-        message = f"`?{variable.name}`: pattern variables are not supported"
-        self.error("no-variables", message, variable.span)
+        message = f"`?{variable.name}`: no variable may stand here"
+        hint = "variables stand in the place of values and conditions"
+        self.error("no-variables", message, variable.span, hint)
+
+    def _parameter_here(self, variable: Variable) -> Parameter:
+        """A variable in the place of a value or a condition; the head must have it."""
+        if variable.name not in self.bound:
+            meant = close(variable.name, self.bound, shortest=3)
+            there_are = " ".join(f"`?{name}`" for name in self.bound) or "none"
+            hint = f"did you mean `?{meant}`?" if meant else f"variables of the head: {there_are}"
+            self.error("unbound-variable", f"`?{variable.name}` is not in the head", variable.span, hint)
+        return Parameter(variable.name, variable.span)
 
     def _no_head(self, form: Form, what: str, known: Sequence[str] = ()) -> None:
         items = form.items if isinstance(form, ListForm) else ()

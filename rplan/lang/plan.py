@@ -1,7 +1,8 @@
 """`Plan`: a well-formed plan whose names have not been looked up.
 
 Takes: nothing. Gives: frozen syntax, one class a form, each with its place. Leaves alone: meaning, types and names.
-`when` and `cond` do not appear: the parser turns them into nested `If`s (L13).
+`when` and `cond` do not appear: the parser turns them into nested `If`s (L13). `Variable`s stand in the bodies of
+rules, conditions and operators that have parameters, and nowhere else.
 """
 
 from __future__ import annotations
@@ -32,11 +33,22 @@ class Truth:
 
 
 @dataclass(frozen=True, slots=True)
-class Call:
-    """A function of the run-time world with its arguments; a bare symbol is a call without arguments (L7)."""
+class Variable:
+    """`?name`, without the question mark: a parameter, in whose place an argument is put (L17)."""
 
     name: str
-    arguments: tuple[Expression, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A function of the run-time world with its arguments; a bare symbol is a call without arguments (L7).
+
+    Arguments are values; only those of a named condition may be conditions or numbers that are worked out.
+    """
+
+    name: str
+    arguments: tuple[Argument, ...]
     span: Span
 
 
@@ -59,7 +71,7 @@ class AnyOf:
 
 
 Comparator = Literal["<", "<=", ">", ">=", "=", "/="]
-Operator = Literal["+", "-", "*", "/", "min", "max", "abs"]
+ArithmeticOperator = Literal["+", "-", "*", "/", "min", "max", "abs"]
 Past = Literal["delay", "once", "historically", "since", "latch", "rose", "fell", "held-for", "within", "at-least"]
 
 
@@ -67,7 +79,7 @@ Past = Literal["delay", "once", "historically", "since", "latch", "rose", "fell"
 class Arithmetic:
     """Numbers put together; `-` of one number is its negative."""
 
-    operator: Operator
+    operator: ArithmeticOperator
     operands: tuple[Quantity, ...]
     span: Span
 
@@ -96,9 +108,23 @@ class Compare:
     span: Span
 
 
-Quantity = Number | Call | Arithmetic
-Expression = Number | Truth | Call
-Condition = Truth | Call | Not | AllOf | AnyOf | Compare | Memory
+@dataclass(frozen=True, slots=True)
+class OutputIs:
+    """`(= OUTPUT VALUE)` or `(open OUTPUT)` (value None) in a property.
+
+    Where `output` turns out to be no output, it is what it looks like: a comparison, or a call of `open`.
+    """
+
+    output: str
+    value: Expression | None
+    span: Span
+
+
+Quantity = Number | Call | Arithmetic | Variable
+Expression = Number | Truth | Call | Variable
+Condition = Truth | Call | Not | AllOf | AnyOf | Compare | Memory | OutputIs | Variable
+Argument = Expression | Quantity | Condition
+"""What may be put in the place of a variable."""
 
 # --- goals ----------------------------------------------------------------------------------------
 
@@ -147,14 +173,29 @@ class PrioAnd:
 
 @dataclass(frozen=True, slots=True)
 class Subgoal:
-    """`(ach NAME)` or `(maint NAME)`."""
+    """`(ach NAME ARG…)` or `(maint NAME ARG…)`; `(ach (NAME ARG…))` says the same.
+
+    A rule answers it, and where there is none, operators answer an `ach`: then `(NAME ARG…)` is the fact (L20).
+    depth: of the regression, None where the text tells none.
+    """
 
     kind: Literal["ach", "maint"]
     name: str
+    arguments: tuple[Argument, ...]
     span: Span
+    depth: int | None = None
 
 
-Goal = Do | Anything | If | And | Or | PrioAnd | Subgoal
+@dataclass(frozen=True, slots=True)
+class Achieve:
+    """`(ach CONDITION)`, a condition that is no single fact: only operators answer it (L20)."""
+
+    condition: Condition
+    span: Span
+    depth: int | None = None
+
+
+Goal = Do | Anything | If | And | Or | PrioAnd | Subgoal | Achieve
 
 # --- top level ------------------------------------------------------------------------------------
 
@@ -209,7 +250,10 @@ class Declaration:
 
 @dataclass(frozen=True, slots=True)
 class OutputDeclaration:
-    """`(defoutput NAME TYPE :idle VALUE)` or `… :hold :initial VALUE`; at most one of idle and hold."""
+    """`(defoutput NAME TYPE :idle VALUE)` or `… :hold :initial VALUE`; at most one of idle and hold.
+
+    required: leaving it open is an error.
+    """
 
     name: str
     type: Type
@@ -217,11 +261,15 @@ class OutputDeclaration:
     hold: bool
     initial: Expression | None
     span: Span
+    required: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class NamedCondition:
+    """`(defcond (NAME ?ARG…) "doc" CONDITION)`; parameters: names without the question mark."""
+
     name: str
+    parameters: tuple[str, ...]
     doc: str
     condition: Condition
     span: Span
@@ -229,10 +277,14 @@ class NamedCondition:
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """`(defgoalr (ach NAME) "doc" GOAL)`; head_span is the place of `(ach NAME)`."""
+    """`(defgoalr (ach NAME ARG…) "doc" GOAL)`; head_span is the place of `(ach NAME ARG…)`.
+
+    parameters: a `Variable` fits every argument; anything else has no variable in it and fits its own canonical text.
+    """
 
     kind: Literal["ach", "maint"]
     name: str
+    parameters: tuple[Argument, ...]
     doc: str
     goal: Goal
     head_span: Span
@@ -240,8 +292,86 @@ class Rule:
 
 
 @dataclass(frozen=True, slots=True)
+class Operator:
+    """`(defop (NAME ?ARG…) "doc" :do (OUTPUT VALUE) :pre CONDITION :add (FACT…) :del (FACT…))` (L20).
+
+    parameters: names without the question mark. Facts are calls, with variables in them. pre is `true` where the text
+    tells none.
+    """
+
+    name: str
+    parameters: tuple[str, ...]
+    doc: str
+    output: str
+    value: Expression
+    precondition: Condition
+    adds: tuple[Call, ...]
+    deletes: tuple[Call, ...]
+    head_span: Span
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
 class TopGoal:
     goal: Goal
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Property:
+    """`(defproperty NAME "doc" :always CONDITION :provided CONDITION)`; provided None: in every tick."""
+
+    name: str
+    doc: str
+    always: Condition
+    provided: Condition | None
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Assumption:
+    """`(assume CONDITION)`."""
+
+    condition: Condition
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Given:
+    """`(PERCEPT VALUE)` of a test: the percept's value from this tick on."""
+
+    percept: Call
+    value: Number | Truth
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Expected:
+    """`(OUTPUT VALUE)` or `(OUTPUT open)` (value None) of a test."""
+
+    output: str
+    value: Expression | None
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """`(tick :times N :given (…) :expect (…) :hole true)`: N ticks, in each of which the same is expected."""
+
+    times: int
+    given: tuple[Given, ...]
+    expected: tuple[Expected, ...]
+    hole: bool
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class PlanTest:
+    """`(deftest NAME "doc" STEP…)`."""
+
+    name: str
+    doc: str
+    steps: tuple[Step, ...]
     span: Span
 
 
@@ -257,3 +387,7 @@ class Plan:
     rules: tuple[Rule, ...]
     top: TopGoal | None
     span: Span
+    operators: tuple[Operator, ...] = ()
+    properties: tuple[Property, ...] = ()
+    assumptions: tuple[Assumption, ...] = ()
+    tests: tuple[PlanTest, ...] = ()

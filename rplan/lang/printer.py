@@ -6,21 +6,22 @@ places, comments, and how the text was first written (`when` and `cond` come out
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from rplan.lang.depth import deep_recursion
 from rplan.lang.plan import (
+    Achieve,
     AllOf,
     And,
     AnyOf,
     Anything,
+    Argument,
     Arithmetic,
     Call,
     Compare,
     Condition,
     Declaration,
     Do,
-    Expression,
     Goal,
     Header,
     If,
@@ -28,18 +29,23 @@ from rplan.lang.plan import (
     NamedCondition,
     Not,
     Number,
+    Operator,
     Or,
     OutputDeclaration,
+    OutputIs,
     Plan,
+    PlanTest,
     PrioAnd,
-    Quantity,
+    Property,
     Rule,
     Setting,
+    Step,
     Subgoal,
     TopGoal,
     Truth,
     Type,
     Use,
+    Variable,
 )
 from rplan.lang.units import canonical_number
 
@@ -51,7 +57,7 @@ Sexp = str | tuple["Sexp", ...]
 """An S-expression yet to be laid out."""
 
 
-def canonical(expression: Expression | Condition | Quantity) -> str:
+def canonical(expression: Argument) -> str:
     """The canonical text (L21): `(name arg)` for a call, also without arguments; `true`; `7.62m`."""
     with deep_recursion():
         return _flat(_condition(expression))
@@ -83,7 +89,7 @@ def quoted(text: str) -> str:
 # --- syntax to S-expressions ----------------------------------------------------------------------
 
 
-def _condition(condition: Expression | Condition | Quantity) -> Sexp:
+def _condition(condition: Argument) -> Sexp:
     match condition:
         case Number(value=value, unit=unit):
             return canonical_number(value, unit)
@@ -103,6 +109,10 @@ def _condition(condition: Expression | Condition | Quantity) -> Sexp:
             return (operator, *[_condition(operand) for operand in operands])
         case Memory():
             return _memory(condition)
+        case OutputIs(output=output, value=value):
+            return ("=", output, _condition(value)) if value else ("open", output)
+        case Variable(name=name):
+            return f"?{name}"
 
 
 def _memory(memory: Memory) -> Sexp:
@@ -134,8 +144,14 @@ def _goal(goal: Goal) -> Sexp:
             return ("or", *[_goal(member) for member in goals])
         case PrioAnd(goals=goals):
             return ("prio-and", *[_goal(member) for member in goals])
-        case Subgoal(kind=kind, name=name):
-            return (kind, name)
+        case Subgoal(kind=kind, name=name, arguments=arguments, depth=depth):
+            return (kind, name, *[_condition(argument) for argument in arguments], *_depth(depth))
+        case Achieve(condition=condition, depth=depth):
+            return ("ach", _condition(condition), *_depth(depth))
+
+
+def _depth(depth: int | None) -> tuple[str, ...]:
+    return () if depth is None else (":depth", str(depth))
 
 
 def _forms(plan: Plan) -> Iterator[Sexp]:
@@ -145,8 +161,13 @@ def _forms(plan: Plan) -> Iterator[Sexp]:
     yield from map(_output, plan.outputs)
     yield from map(_named_condition, plan.conditions)
     yield from map(_rule, plan.rules)
+    yield from map(_operator, plan.operators)
     if plan.top:
         yield _top(plan.top)
+    yield from map(_property, plan.properties)
+    for assumption in plan.assumptions:
+        yield ("assume", _condition(assumption.condition))
+    yield from map(_test, plan.tests)
 
 
 def _doc(doc: str) -> tuple[str, ...]:
@@ -181,15 +202,60 @@ def _output(output: OutputDeclaration) -> Sexp:
         options.append(":hold")
     if output.initial:
         options += [":initial", _condition(output.initial)]
+    if output.required:
+        options.append(":required")
     return ("defoutput", output.name, _type(output.type), *options)
 
 
 def _named_condition(named: NamedCondition) -> Sexp:
-    return ("defcond", (named.name,), *_doc(named.doc), _condition(named.condition))
+    return ("defcond", _signature(named.name, named.parameters), *_doc(named.doc), _condition(named.condition))
+
+
+def _signature(name: str, parameters: Sequence[str]) -> Sexp:
+    return (name, *[f"?{parameter}" for parameter in parameters])
 
 
 def _rule(rule: Rule) -> Sexp:
-    return ("defgoalr", (rule.kind, rule.name), *_doc(rule.doc), _goal(rule.goal))
+    return ("defgoalr", _head(rule), *_doc(rule.doc), _goal(rule.goal))
+
+
+def _head(rule: Rule) -> Sexp:
+    return (rule.kind, rule.name, *[_condition(parameter) for parameter in rule.parameters])
+
+
+def print_head(rule: Rule) -> str:
+    """`(ach NAME ARG…)` as canonical text."""
+    return _flat(_head(rule))
+
+
+def _operator(operator: Operator) -> Sexp:
+    parts: list[Sexp] = [
+        ":do",
+        (operator.output, _condition(operator.value)),
+        ":pre",
+        _condition(operator.precondition),
+    ]
+    parts += [":add", tuple(map(_condition, operator.adds)), ":del", tuple(map(_condition, operator.deletes))]
+    return ("defop", _signature(operator.name, operator.parameters), *_doc(operator.doc), *parts)
+
+
+def _property(one: Property) -> Sexp:
+    provided: tuple[Sexp, ...] = (":provided", _condition(one.provided)) if one.provided else ()
+    return ("defproperty", one.name, *_doc(one.doc), ":always", _condition(one.always), *provided)
+
+
+def _test(test: PlanTest) -> Sexp:
+    return ("deftest", test.name, *_doc(test.doc), *map(_step, test.steps))
+
+
+def _step(step: Step) -> Sexp:
+    parts: list[Sexp] = [":times", str(step.times)] if step.times != 1 else []
+    if step.given:
+        parts += [":given", tuple((_condition(one.percept), _condition(one.value)) for one in step.given)]
+    if step.expected:
+        expected = tuple((one.output, _condition(one.value) if one.value else "open") for one in step.expected)
+        parts += [":expect", expected]
+    return ("tick", *parts, *((":hole", "true") if step.hole else ()))
 
 
 def _top(top: TopGoal) -> Sexp:

@@ -25,7 +25,10 @@ from rplan.lang.source import Source, Span
 from rplan.lang.suggest import close
 from rplan.lang.units import BadNumberError, read_number
 
-TOP_FORMS = ("plan", "use", "declare", "defoutput", "defcond", "defgoalr", "goalem", "goallem")
+TOP_FORMS = (
+    "plan", "include", "use", "declare", "defoutput", "defcond", "defgoalr", "defop", "goalem", "goallem",
+    "defproperty", "assume", "deftest",
+)  # fmt: skip
 """What a form of the top level may begin with."""
 
 MAX_ERRORS = 50
