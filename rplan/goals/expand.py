@@ -12,6 +12,7 @@ from importlib import import_module
 from importlib.util import find_spec
 
 from rplan.goals import goal as g
+from rplan.goals.claims import resolve_assumptions, resolve_properties
 from rplan.goals.operators import checked_operators
 from rplan.goals.papercuts import check_channels
 from rplan.goals.resolve import resolve_condition, resolve_definitions, resolve_outputs, resolve_settings, resolve_value
@@ -19,6 +20,7 @@ from rplan.goals.scope import DEEPEST, LONGEST, Findings, Scope, report_unused, 
 from rplan.goals.signature import Libraries
 from rplan.goals.substitute import Substitution, has_variables, unfold
 from rplan.goals.symbols import symbols_of
+from rplan.goals.trials import resolve_trials
 from rplan.lang import plan as p
 from rplan.lang.diagnostic import Diagnostic, PlanError, Related
 from rplan.lang.printer import canonical, print_head
@@ -49,8 +51,11 @@ def expand(plan: p.Plan, libraries: Libraries, *, strict: bool = False) -> tuple
     top = _top(plan, reducer, findings)
     for rule in plan.rules:
         reducer.unreached(rule)
-    definitions = resolve_definitions(scope)
     outputs = resolve_outputs(plan, scope, top)
+    properties = resolve_properties(plan, scope, outputs)
+    assumptions = resolve_assumptions(plan, scope, outputs)
+    trials = resolve_trials(plan, scope, outputs)
+    definitions = resolve_definitions(scope)
     report_unused(plan, scope)
     if top is not None:
         check_channels(top, outputs, scope)
@@ -67,6 +72,9 @@ def expand(plan: p.Plan, libraries: Libraries, *, strict: bool = False) -> tuple
         functions=dict(scope.functions),
         span=plan.span,
         definitions=definitions,
+        properties=properties,
+        assumptions=assumptions,
+        tests=trials,
     )
     return goals, tuple(findings.list)
 
@@ -85,6 +93,7 @@ class _Reducer:
     """Puts rule bodies in the place of goals; each rule is reduced once for the same arguments, and shared.
 
     path: from the top goal to here; reached: the places of the heads of the rules that were come to.
+    endless: something went so deep that no goal is followed any further.
     """
 
     scope: Scope
@@ -94,6 +103,7 @@ class _Reducer:
     sizes: dict[int, int] = field(default_factory=dict)
     path: list[tuple[Key, Span]] = field(default_factory=list)
     reached: dict[Span, None] = field(default_factory=dict)
+    endless: bool = False
 
     def goal(self, goal: p.Goal, rule: str) -> g.Goal:
         """The goal with everything inside it reduced; `rule` is the head of the rule that it stands in."""
@@ -125,7 +135,7 @@ class _Reducer:
             self.scope.used[("rule", print_head(rule))] = None
         if any(map(has_variables, goal.arguments)):
             return self._in_general(goal, head)
-        if self.scope.endless:
+        if self.endless:
             return g.Anything(head, goal.span)
         if not rules:
             return self._without_rule(goal, head)
@@ -226,7 +236,7 @@ class _Reducer:
 
     def _achieve(self, goal: p.Achieve) -> g.Goal:
         head = f"(ach {canonical(goal.condition)})"
-        if has_variables(goal.condition) or self.scope.endless:
+        if has_variables(goal.condition) or self.endless:
             return g.Anything(head, goal.span)
         if not self.operators:
             self.scope.findings.add(
@@ -259,7 +269,7 @@ class _Reducer:
             self.scope.findings.add(
                 "error", "too-large", f"the reduced goal has more than {LARGEST:,} nodes", node.span
             )
-            self.scope.endless = True
+            self.endless = True
             return g.Anything("", node.span)
         self.sizes[id(node)] = size
         return node
@@ -271,7 +281,7 @@ class _Reducer:
         self.scope.findings.add(
             "error", "too-deep", f"rules are nested deeper than {DEEPEST}", span, related=self._steps(0)[:3]
         )
-        self.scope.endless = True
+        self.endless = True
 
     def _circle(self, start: int, head: str, span: Span) -> None:
         names = [*(_head(key) for key, _ in self.path[start:]), head]

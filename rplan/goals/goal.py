@@ -131,6 +131,32 @@ class Assumption:
 
 
 @dataclass(frozen=True, slots=True)
+class TrialStep:
+    """So many ticks with the same percepts, in each of which the same is expected.
+
+    given: canonical text of a percept -> its value (numbers in SI) from here on. expected: output -> canonical text of
+    its value, None where the way must leave it open; outputs that are not named may be anything. hole: whether the tick
+    must be a hole.
+    """
+
+    times: int
+    given: tuple[tuple[str, bool | float], ...]
+    expected: tuple[tuple[str, str | None], ...]
+    hole: bool
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """A test of the plan alone; percepts that no step has given yet are false or 0."""
+
+    name: str
+    doc: str
+    steps: tuple[TrialStep, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
 class Goals:
     """A checked plan. outputs in the order in which channels are filled (L25); functions: every name that is known.
 
@@ -149,6 +175,7 @@ class Goals:
     definitions: Mapping[str, Condition] = field(default_factory=dict)
     properties: tuple[Property, ...] = ()
     assumptions: tuple[Assumption, ...] = ()
+    tests: tuple[Trial, ...] = ()
 
     def conditions(self) -> Iterator[Condition]:
         """Every condition that is asked, those of the top goal first."""

@@ -59,7 +59,7 @@ class Scope:
     """The tables of names of one plan, one a name space, and which of them have been used.
 
     recursive: named conditions that ask their own past, by their text. asks: whether outputs may be asked here.
-    endless: something went so deep that what is around it is not followed any further.
+    endless: conditions went so deep that none is followed any further.
     """
 
     functions: dict[str, FunctionSignature]

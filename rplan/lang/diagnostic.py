@@ -25,7 +25,10 @@ class Related:
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One finding. when: the situation that shows it, for findings that have a witness."""
+    """One finding. when: the situation that shows it, for findings that have a witness.
+
+    trace: the same as lines for `rplan tick`, one JSON object a tick.
+    """
 
     code: str
     severity: Severity
@@ -34,6 +37,7 @@ class Diagnostic:
     related: tuple[Related, ...] = ()
     hint: str = ""
     when: str = ""
+    trace: tuple[str, ...] = ()
 
 
 class PlanError(Exception):

@@ -867,6 +867,8 @@ class _Parser:
                 return self._arithmetic(form, name, rest)
             case ListForm(items=(Symbol(name=name), *_)) if name in CONDITION_FORMS:
                 return self.condition(form)
+            case Symbol(name=name) | ListForm(items=(Symbol(name=name), *_)) if name not in _RESERVED:
+                return self._called(form, name, self.argument)
             case _:
                 return self.expression(form)
 
@@ -890,9 +892,7 @@ class _Parser:
     def _call(self, form: Form, name: str, wanted: str) -> Call | None:
         """A call of `name`, None where the name is a word of the language."""
         if name not in _RESERVED:
-            parts = form.items[1:] if isinstance(form, ListForm) else ()
-            one_argument = self.argument if wanted == "condition" else self.expression
-            return Call(name, tuple(one_argument(part) for part in parts), form.span)
+            return self._called(form, name, self.argument if wanted == "condition" else self.expression)
         if name in OPERATORS:
             hint = "compare numbers with `<`, `<=`, `>`, `>=`, `=` or `/=`"
             self.error("misplaced-form", f"`{name}` makes a number; here a {wanted} is expected", form.span, hint)
@@ -902,6 +902,10 @@ class _Parser:
             what = _what_is(name)
             self.error("misplaced-form", f"`{name}` is {what}; here a {wanted} is expected", form.span)
         return None
+
+    def _called(self, form: Form, name: str, parse_one: Callable[[Form], Argument]) -> Call:
+        parts = form.items[1:] if isinstance(form, ListForm) else ()
+        return Call(name, tuple(parse_one(part) for part in parts), form.span)
 
     # --- parts ---
 
