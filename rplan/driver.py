@@ -6,9 +6,10 @@ is to be said of it; `PlanError` with everything that is wrong. Leaves alone: ro
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import NamedTuple
 
 from rplan.circuit import passes
 from rplan.circuit.build import build
@@ -18,18 +19,25 @@ from rplan.goals.goal import Goals
 from rplan.goals.signature import Libraries
 from rplan.lang.depth import deep_recursion
 from rplan.lang.diagnostic import Diagnostic, PlanError
-from rplan.lang.parse import parse_text
+from rplan.lang.include import OpenFile, gather, no_files
+from rplan.lang.parse import parse_gathered
 from rplan.lang.plan import Plan
 from rplan.lang.source import Source
 from rplan.ways.coverage import find
 from rplan.ways.reduce import Ways, reduce
+
+Checks = Callable[[Ways], tuple[Diagnostic, ...]]
+"""More to be said of a plan than whether it is wrong."""
 
 NO_LIBRARIES: Libraries = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)
 class Compiled:
-    """A plan after every stage. diagnostics: warnings and notes in the order in which they were found."""
+    """A plan after every stage. diagnostics: warnings and notes in the order in which they were found.
+
+    sources: every text that is part of it, the plan's own first.
+    """
 
     source: Source
     plan: Plan
@@ -37,37 +45,70 @@ class Compiled:
     ways: Ways
     circuit: Circuit
     diagnostics: tuple[Diagnostic, ...]
+    sources: tuple[Source, ...] = ()
 
     @property
     def texts(self) -> Mapping[str, str]:
         """File name -> text, for messages with caret lines."""
-        return {self.source.name: self.source.text}
+        return texts_of(self.sources or (self.source,))
 
 
-def load(source: Source) -> tuple[Plan, tuple[Diagnostic, ...]]:
-    """Text → Plan: well formed, names not looked up."""
-    with deep_recursion():
-        return parse_text(source)
+def texts_of(sources: Iterable[Source]) -> Mapping[str, str]:
+    """File name -> text."""
+    return {source.name: source.text for source in sources}
+
+
+class Loaded(NamedTuple):
+    """A well-formed plan, what is to be said of it, and the texts that it comes from, its own first."""
+
+    plan: Plan
+    diagnostics: tuple[Diagnostic, ...]
+    sources: tuple[Source, ...]
+
+
+def load(source: Source, open_file: OpenFile = no_files) -> Loaded:
+    """Text → Plan: well formed, names not looked up, with the definitions of the files that it includes.
+
+    open_file: path → source, for `include`; paths are relative to where the plan's own name is.
+    """
+    gathered = gather(source, open_file)
+    try:
+        plan, said = parse_gathered(gathered)
+    except PlanError as error:
+        raise PlanError(error.diagnostics, texts_of(gathered.sources)) from None
+    return Loaded(plan, said, tuple(gathered.sources))
+
+
+def no_checks(ways: Ways) -> tuple[Diagnostic, ...]:  # noqa: ARG001
+    """Nothing more."""
+    return ()
 
 
 def compile_plan(
-    source: Source, libraries: Libraries = NO_LIBRARIES, *, strict: bool = False, allow_holes: bool = False
+    source: Source,
+    libraries: Libraries = NO_LIBRARIES,
+    *,
+    open_file: OpenFile = no_files,
+    strict: bool = False,
+    allow_holes: bool = False,
+    checks: Checks = no_checks,
 ) -> Compiled:
-    """A plan checked and compiled.
+    """A plan checked and compiled; `rplan.ways.coverage.review` has more checks to ask for.
 
     strict: a name that nothing declares is an error. allow_holes: a hole is a warning. Raises `PlanError` with all that
     is wrong; what was only noticed is in `Compiled.diagnostics`.
     """
     with deep_recursion():
-        plan, said = load(source)
-        found = list(said)
+        loaded = load(source, open_file)
+        found = list(loaded.diagnostics)
         try:
-            goals, noticed = expand(plan, libraries, strict=strict)
+            goals, noticed = expand(loaded.plan, libraries, strict=strict)
             found += noticed
             ways = reduce(goals)
         except PlanError as error:
-            raise PlanError([*found, *error.diagnostics]) from None
-        found += find(ways, allow_holes=allow_holes)
+            raise PlanError([*found, *error.diagnostics], texts_of(loaded.sources)) from None
+        found += [*find(ways, allow_holes=allow_holes), *checks(ways)]
         if any(diagnostic.severity == "error" for diagnostic in found):
-            raise PlanError(found)
-        return Compiled(source, plan, goals, ways, passes.run(build(ways)), tuple(found))
+            raise PlanError(found, texts_of(loaded.sources))
+        circuit = passes.run(build(ways))
+        return Compiled(source, loaded.plan, goals, ways, circuit, tuple(found), loaded.sources)

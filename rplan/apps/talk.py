@@ -14,41 +14,50 @@ import click
 
 from rplan.apps.files import unreadable
 from rplan.apps.wiring import compile_file
-from rplan.driver import Compiled
+from rplan.driver import Checks, Compiled, no_checks
 from rplan.lang.diagnostic import Diagnostic, PlanError, render
 
 PLAN_IS_WRONG = 1
 MOST_NOTES = 8
 
 
-def compiled(path: Path, *, strict: bool = False, allow_holes: bool = False, as_json: bool = False) -> Compiled:
+def compiled(
+    path: Path,
+    *,
+    strict: bool = False,
+    allow_holes: bool = False,
+    as_json: bool = False,
+    checks: Checks = no_checks,
+    verbose: bool = False,
+) -> Compiled:
     """The plan in a file, compiled; says what is to be said and leaves with 1 if it is wrong."""
     try:
-        plan = compile_file(path, strict=strict, allow_holes=allow_holes)
+        plan = compile_file(path, strict=strict, allow_holes=allow_holes, checks=checks)
     except PlanError as error:
-        wrong(error, path, as_json=as_json)
+        wrong(error, path, as_json=as_json, verbose=verbose)
     except OSError as error:
         unreadable(path, error)
     if not as_json:
-        say(plan.diagnostics, plan.texts)
+        say(plan.diagnostics, plan.texts, every_note=verbose)
     return plan
 
 
-def wrong(error: PlanError, path: Path, *, as_json: bool = False) -> NoReturn:
+def wrong(error: PlanError, path: Path, *, as_json: bool = False, verbose: bool = False) -> NoReturn:
     """Say everything that is wrong with a plan and leave with 1."""
     if as_json:
         result({"ok": False, "diagnostics": [as_plain(d) for d in error.diagnostics]})
     else:
-        say(error.diagnostics, {str(path): path.read_bytes().decode("utf-8", errors="replace")})
+        texts = error.texts or {str(path): path.read_bytes().decode("utf-8", errors="replace")}
+        say(error.diagnostics, texts, every_note=verbose)
     raise SystemExit(PLAN_IS_WRONG)
 
 
-def say(diagnostics: Iterable[Diagnostic], texts: Mapping[str, str]) -> None:
+def say(diagnostics: Iterable[Diagnostic], texts: Mapping[str, str], *, every_note: bool = False) -> None:
     """Print diagnostics to stderr, errors first, and count them; many notes are cut short."""
     every = list(diagnostics)
     for severity in ("error", "warning", "note"):
         some = [d for d in every if d.severity == severity]
-        shown = some[:MOST_NOTES] if severity == "note" else some
+        shown = some[:MOST_NOTES] if severity == "note" and not every_note else some
         for diagnostic in shown:
             click.echo(printable(render(diagnostic, texts)) + "\n", err=True)
         if len(shown) < len(some):
@@ -74,6 +83,7 @@ def as_plain(diagnostic: Diagnostic) -> Mapping[str, object]:
         "related": [{"message": r.message, "place": place(r.span)} for r in diagnostic.related],
         "hint": diagnostic.hint,
         "when": diagnostic.when,
+        "trace": [json.loads(line) for line in diagnostic.trace],
     }
 
 

@@ -12,9 +12,10 @@ from pathlib import Path
 from behaviours.catalogue import LIBRARIES
 from behaviours.interface import STOP, Command, Competence, Library, Pose, Reading, Workshop
 from rplan.backends.python import PythonEngine
-from rplan.driver import Compiled, compile_plan
+from rplan.driver import Checks, Compiled, compile_plan, no_checks
 from rplan.goals.signature import FunctionSignature, Libraries, LibrarySignature, ParameterSignature
 from rplan.lang.diagnostic import Diagnostic, PlanError
+from rplan.lang.include import OpenFile
 from rplan.lang.plan import Type
 from rplan.lang.reader import source_from_file
 from rplan.lang.source import Source
@@ -39,16 +40,38 @@ def signatures() -> Libraries:
     return {name: signature(library) for name, library in LIBRARIES.items()}
 
 
-def compile_file(path: Path, *, strict: bool = False, allow_holes: bool = False) -> Compiled:
+def compile_file(
+    path: Path, *, strict: bool = False, allow_holes: bool = False, checks: Checks = no_checks
+) -> Compiled:
     """The plan in a file, compiled against every library; `PlanError`, `OSError`."""
-    return compile_source(source_from_file(path), strict=strict, allow_holes=allow_holes)
+    return compile_source(source_from_file(path), strict=strict, allow_holes=allow_holes, checks=checks)
 
 
-def compile_source(source: Source, *, strict: bool = False, allow_holes: bool = False) -> Compiled:
-    """A plan compiled against every library; `PlanError`, also where a library refuses its parameters."""
-    compiled = compile_plan(source, signatures(), strict=strict, allow_holes=allow_holes)
-    crew(compiled)
+def compile_source(
+    source: Source,
+    *,
+    strict: bool = False,
+    allow_holes: bool = False,
+    checks: Checks = no_checks,
+    open_file: OpenFile | None = None,
+) -> Compiled:
+    """A plan compiled against every library; `PlanError`, also where a library refuses its parameters.
+
+    open_file: where included files come from, without it the disk.
+    """
+    compiled = compile_plan(
+        source, signatures(), strict=strict, allow_holes=allow_holes, checks=checks, open_file=open_file or from_disk
+    )
+    try:
+        crew(compiled)
+    except PlanError as error:
+        raise PlanError(error.diagnostics, compiled.texts) from None
     return compiled
+
+
+def from_disk(path: str) -> Source:
+    """The text of a file; `OSError`, `PlanError`."""
+    return source_from_file(Path(path))
 
 
 def decider(compiled: Compiled) -> Decider:

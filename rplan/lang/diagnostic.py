@@ -41,10 +41,14 @@ class Diagnostic:
 
 
 class PlanError(Exception):
-    """The plan is wrong; carries every diagnostic, at least one of them an error."""
+    """The plan is wrong; carries every diagnostic, at least one of them an error.
 
-    def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
+    texts: file name -> its text, as far as it is known where the error is raised.
+    """
+
+    def __init__(self, diagnostics: Iterable[Diagnostic], texts: Mapping[str, str] | None = None) -> None:
         self.diagnostics = tuple(diagnostics)
+        self.texts = texts or {}
         super().__init__("; ".join(f"{d.span}: {d.message}" for d in self.diagnostics if d.severity == "error"))
 
 

@@ -18,6 +18,7 @@ from typing import Literal, TypeVar
 
 from rplan.lang.depth import MAX_LEVELS, deep_recursion
 from rplan.lang.diagnostic import Diagnostic, PlanError, Related
+from rplan.lang.include import Gathered
 from rplan.lang.plan import (
     Achieve,
     AllOf,
@@ -64,6 +65,7 @@ from rplan.lang.plan import (
     Use,
 )
 from rplan.lang.plan import Variable as Parameter
+from rplan.lang.printer import canonical
 from rplan.lang.reader import (
     TOP_FORMS,
     Broken,
@@ -150,18 +152,30 @@ def parse(forms: Sequence[Form], source: Source) -> tuple[Plan, tuple[Diagnostic
 
 
 def parse_text(source: Source) -> tuple[Plan, tuple[Diagnostic, ...]]:
-    """`read` and `parse` in one, so that errors of the text and errors of the forms are told together."""
+    """`read` and `parse` in one, so that errors of the text and errors of the forms are told together.
+
+    What the text includes is left alone; see `parse_gathered`.
+    """
     forms, errors = read_with_errors(source)
-    if errors and not forms:
-        raise PlanError(capped(errors))
-    parser = _Parser(source)
+    return parse_gathered(Gathered([*forms], [source], [*errors]))
+
+
+def parse_gathered(gathered: Gathered) -> tuple[Plan, tuple[Diagnostic, ...]]:
+    """The plan of a text and of all that it includes; errors in the order of the files."""
+    if gathered.errors and not gathered.forms:
+        raise PlanError(capped(gathered.errors))
+    parser = _Parser(gathered.sources[0])
     with deep_recursion():
-        plan = parser.plan(forms)
-    return _plan_or_error(plan, [*errors, *parser.found])
+        plan = parser.plan(gathered.forms)
+    names = [source.name for source in gathered.sources]
+    return _plan_or_error(plan, [*gathered.errors, *parser.found], names)
 
 
-def _plan_or_error(plan: Plan, found: Iterable[Diagnostic]) -> tuple[Plan, tuple[Diagnostic, ...]]:
-    inorder = tuple(sorted(found, key=lambda diagnostic: diagnostic.span))
+def _plan_or_error(
+    plan: Plan, found: Iterable[Diagnostic], files: Sequence[str] = ()
+) -> tuple[Plan, tuple[Diagnostic, ...]]:
+    order = {name: number for number, name in enumerate(files)}
+    inorder = tuple(sorted(found, key=lambda one: (order.get(one.span.file, 0), one.span)))
     if any(diagnostic.severity == "error" for diagnostic in inorder):
         raise PlanError(capped(inorder))
     return plan, inorder
@@ -210,7 +224,7 @@ class _Parser:
         self._only_one("goalem", "a plan has one top goal", [top.span for top in tops])
         return Plan(
             headers[0] if headers else Header(_name_of_file(self.source.name), "", DEFAULT_PERIOD, start),
-            self._distinct("library", [(use.library, use) for use in every(self.use, "use")]),
+            self._distinct("library", _once([(use.library, use) for use in every(self.use, "use")])),
             self._distinct("function", [(one.name, one) for one in every(self.declaration, "declare")]),
             self._distinct("output", [(one.name, one) for one in every(self.output, "defoutput")]),
             self._distinct("condition", [(one.name, one) for one in every(self.named_condition, "defcond")]),
@@ -1028,6 +1042,17 @@ class _Branch:
 
     condition: Condition | None
     goal: Goal
+
+
+def _once(uses: Sequence[tuple[str, Use]]) -> list[tuple[str, Use]]:
+    """Without what another file has said in the same words: several files may use one library."""
+    said: dict[tuple[str, str], str] = {}
+    kept: list[tuple[str, Use]] = []
+    for name, use in uses:
+        words = " ".join([f":{one.name} {canonical(one.value)}" for one in use.settings])
+        if said.setdefault((name, words), use.span.file) == use.span.file:
+            kept.append((name, use))
+    return kept
 
 
 _TYPES_HINT = "the types: bool, (number UNIT), pose, command, symbol"
