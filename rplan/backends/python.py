@@ -3,11 +3,11 @@
 Takes: a circuit. Gives: its source text (`emit`, `generate` with what it costs) and an `Engine` that runs it
 (`PythonEngine`). Leaves alone: what the bits mean.
 
-Where the outputs are decided by a tree of tests that is small enough, the code is that tree: it asks an input only
-where the answer matters, and returns one of the few settings of the outputs, all made beforehand. Where it is not, every
-gate is an expression: one that is read once stands inside the expression that reads it, so that `and` and `or` stop
-early; the others get a name. Either way every register is evaluated in every tick (L11, L19). Comments carry the
-places in the plan.
+Where a tree of tests that is small enough decides the outputs, the code is that tree: it asks an input only where the
+answer matters, and returns one of the few settings of the outputs, all made beforehand. Elsewhere every gate is an
+expression: one that is read once stands inside the expression that reads it, so that `and` and `or` stop early; the
+others get a name. Either way every register is evaluated in every tick (L11, L19). Comments carry the places in the
+plan.
 """
 
 from __future__ import annotations

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from rplan.circuit.cell import Op
 from rplan.circuit.circuit import Circuit
 from rplan.circuit.evaluate import Bits
+from rplan.circuit.passes.merge import Variable, variables
 
 MOST_NODES = 4096
 """Tests and ends of a tree, at most."""
@@ -23,8 +24,6 @@ MOST_VARIABLES = 400
 """Both are limits for trying at all; recursion goes as deep as there are variables."""
 MOST_STEPS = 1 << 14
 """Conjunctions while building diagrams; that takes less than 0.05 s."""
-
-Variable = tuple[Op, int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +52,7 @@ def decisions(circuit: Circuit, most: int = MOST_NODES) -> Tree | None:
     """The tree of a circuit's outputs; None if it has more than `most` nodes or takes too long to find out."""
     if sum(1 for cell in circuit.cells if cell.operands) > MOST_GATES:
         return None
-    read = list(dict.fromkeys((c.op, c.index) for c in circuit.cells if c.op in (Op.INPUT, Op.REGISTER)))
+    read = variables(circuit)
     if len(read) > MOST_VARIABLES:
         return None
     declared = sorted(read, key=lambda name: (name[0] is Op.REGISTER, name[1]))
@@ -108,7 +107,7 @@ class _Diagrams:
     def both(self, a: int, b: int) -> int:
         if a > b:
             a, b = b, a
-        if a == FALSE or a == b:
+        if a in (FALSE, b):
             return a
         if a == TRUE:
             return b
