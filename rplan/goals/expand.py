@@ -6,15 +6,13 @@ and notes, or `PlanError` with everything that is wrong. Leaves alone: which goa
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from importlib import import_module
-from importlib.util import find_spec
 
 from rplan.goals import goal as g
 from rplan.goals.claims import resolve_assumptions, resolve_properties
 from rplan.goals.operators import checked_operators
 from rplan.goals.papercuts import check_channels
+from rplan.goals.regress import RegressionError, regress
 from rplan.goals.resolve import resolve_condition, resolve_definitions, resolve_outputs, resolve_settings, resolve_value
 from rplan.goals.scope import DEEPEST, LONGEST, Findings, Scope, report_unused, scope_of
 from rplan.goals.signature import Libraries
@@ -31,8 +29,6 @@ DEPTH = 8
 """Steps of operators that a goal may take, where its text tells nothing (L20)."""
 LARGEST = 2_000_000
 """Nodes of a reduced goal, at most."""
-
-Regress = Callable[[p.Condition, Sequence[p.Operator], Sequence[str], int, Span], p.Goal]
 
 Key = tuple[str, ...]
 """Kind, name and the canonical texts of the arguments of a goal."""
@@ -227,12 +223,16 @@ class _Reducer:
     def _regressed(self, condition: p.Condition, depth: int | None, head: str, span: Span) -> g.Goal:
         """Operators in the place of a goal, as an ordinary goal (L20)."""
         unfolded = unfold(condition, self.scope.conditions, self.scope.findings)
-        regress = _regression()
-        if regress is None:
-            self.scope.findings.add("error", "no-rule", f"no rule reduces `{head}`", span)
+        try:
+            clauses = regress(unfolded, self.operators, self.symbols, DEPTH if depth is None else depth, span)
+        except RegressionError as error:
+            self.scope.findings.add("error", "no-regression", f"`{head}` cannot be regressed: {error}", span)
             return g.Anything(head, span)
-        syntax = regress(unfolded, self.operators, self.symbols, DEPTH if depth is None else depth, span)
-        return self._sized(g.Reduced(head, self.goal(syntax, head), span, self.operators[0].span))
+        goal: g.Goal = g.Impossible(span)
+        for clause in reversed(clauses):
+            act = g.Anything(head, span) if clause.act is None else self.goal(clause.act, head)
+            goal = self._sized(g.If(resolve_condition(clause.condition, self.scope), act, goal, head, act.span))
+        return self._sized(g.Reduced(head, goal, span, self.operators[0].span))
 
     def _achieve(self, goal: p.Achieve) -> g.Goal:
         head = f"(ach {canonical(goal.condition)})"
@@ -313,13 +313,6 @@ class _Reducer:
         if (other, name) in self.scope.rules:
             return f"there is a rule for `({other} {name})`; `ach` and `maint` are different heads"
         return f"did you mean `({kind} {meant})`?" if meant else f"write `(defgoalr {head} GOAL)`"
-
-
-def _regression() -> Regress | None:
-    if find_spec("rplan.goals.regress") is None:
-        return None
-    found: Regress = import_module("rplan.goals.regress").regress
-    return found
 
 
 def _head(key: Key) -> str:

@@ -35,6 +35,13 @@ class Anything:
 
 
 @dataclass(frozen=True, slots=True)
+class Impossible:
+    """No way at all: where operators do not lead to a goal (L20)."""
+
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
 class If:
     condition: Condition
     then: Goal
@@ -74,7 +81,7 @@ class Reduced:
     rule_span: Span
 
 
-Goal = Do | Anything | If | And | Or | PrioAnd | Reduced
+Goal = Do | Anything | Impossible | If | And | Or | PrioAnd | Reduced
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,7 +205,7 @@ class Goals:
 def children(goal: Goal) -> tuple[Goal, ...]:
     """The goals directly inside a goal, in textual order."""
     match goal:
-        case Do() | Anything():
+        case Do() | Anything() | Impossible():
             return ()
         case If(then=then, otherwise=otherwise):
             return (then, otherwise)
@@ -229,6 +236,8 @@ def print_goal(goal: Goal) -> str:
             return f"(do {output} {value.text})"
         case Anything():
             return "(do anything)"
+        case Impossible():
+            return "(or)"
         case If(condition=condition, then=then, otherwise=otherwise):
             return f"(if {print_condition(condition)} {print_goal(then)} {print_goal(otherwise)})"
         case And(goals):

@@ -75,9 +75,7 @@ def regress(
     return tuple(clauses)
 
 
-def _instances(
-    operator: p.Operator, symbols: Sequence[str], atoms: dict[str, p.Condition]
-) -> Iterator[_Instance]:
+def _instances(operator: p.Operator, symbols: Sequence[str], atoms: dict[str, p.Condition]) -> Iterator[_Instance]:
     """The operator for every choice of symbols, in the order in which the plan names them."""
     if len(symbols) ** len(operator.parameters) > MOST_INSTANCES:
         raise RegressionError(f"the operator `{operator.name}` has more than {MOST_INSTANCES:,} instances")

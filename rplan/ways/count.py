@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from rplan.goals.condition import AllOf, AnyOf, Comparison, Condition, Constant, Memory, Named, Not, OutputIs, Percept
-from rplan.goals.goal import And, Anything, Do, Goal, If, Or, PrioAnd, Reduced
+from rplan.goals.goal import And, Anything, Do, Goal, If, Impossible, Or, PrioAnd, Reduced
 
 Cube = frozenset[tuple[str, bool]]
 
@@ -71,6 +71,8 @@ def _ways(goal: Goal) -> list[PaperWay]:
             return [PaperWay(frozenset(), frozenset([(output, value.text)]))]
         case Anything():
             return [PaperWay(frozenset(), frozenset())]
+        case Impossible():
+            return []
         case Reduced(goal=inner):
             return _ways(inner)
         case If(condition=condition, then=then, otherwise=otherwise):

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from itertools import product
 
 from rplan.goals.condition import AllOf, AnyOf, Comparison, Condition, Constant, Memory, Named, Not, OutputIs, Percept
-from rplan.goals.goal import And, Anything, Do, Goal, If, Or, PrioAnd, Reduced, children
+from rplan.goals.goal import And, Anything, Do, Goal, If, Impossible, Or, PrioAnd, Reduced, children
 
 Place = tuple[int, ...]
 Atoms = Callable[[str], bool]
@@ -140,6 +140,8 @@ def _ways(goal: Goal, place: Place, situation: Situation) -> Iterator[Way]:
             yield Way((place,), (), (), ((output, value.text),))
         case Anything():
             yield Way((), (), (), ())
+        case Impossible():
+            return
         case If(condition=condition, then=then, otherwise=otherwise):
             number, branch = (0, then) if holds(condition, situation) else (1, otherwise)
             yield from _ways(branch, (*place, number), situation)

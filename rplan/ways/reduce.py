@@ -27,7 +27,7 @@ from rplan.goals.condition import (
     Percept,
 )
 from rplan.goals.condition import atoms as atoms_of
-from rplan.goals.goal import And, Anything, Do, Goals, If, Or, PrioAnd, Reduced
+from rplan.goals.goal import And, Anything, Do, Goals, If, Impossible, Or, PrioAnd, Reduced
 from rplan.ways.alternatives import LIMIT, Alternatives, Choice
 from rplan.ways.guards import FALSE, TRUE, Guards
 from rplan.ways.layout import Layout, Member, lay_out
@@ -51,6 +51,7 @@ class Ways:
     `if` (true elsewhere). atoms, registers: what guards ask, by number.
     driving: so many registers, the first ones, serve the goal; the others serve properties alone.
     claims: of the properties, in their order; assumed: what may be taken for granted.
+    on_offer: (node number of an `or`, alternative) -> it goes, and no other way gives up less.
     """
 
     goals: Goals
@@ -66,6 +67,7 @@ class Ways:
     given_up: tuple[int, ...]
     claims: tuple[Claim, ...]
     assumed: tuple[int, ...]
+    on_offer: dict[tuple[int, int], int] = field(default_factory=dict)
 
     def signature(self) -> tuple[int, ...]:
         """The guards that tell one way from another: what is done, and what is given up."""
@@ -176,6 +178,8 @@ class _Reducer:
         for node in reversed(self.layout.nodes):
             if isinstance(node.goal, Do):
                 touches[node.number] |= 1 << self.layout.group_of[node.goal.output]
+            elif isinstance(node.goal, Impossible):
+                touches[node.number] |= 1 << (self.layout.group_under(node) or 0)
             if node.parent >= 0:
                 touches[node.parent] |= touches[node.number]
                 sizes[node.parent] += sizes[node.number]
@@ -278,6 +282,8 @@ class _Reducer:
                 return clash
             case Anything():
                 return FALSE
+            case Impossible():
+                return guard
             case If(condition=condition):
                 return self._claim_branches(inside, self.guard_of(condition), guard, group, option)
             case Reduced() | PrioAnd():
@@ -332,7 +338,15 @@ class _Reducer:
             given_up=tuple(given_up),
             claims=claims,
             assumed=assumed,
+            on_offer=self._on_offer(),
         )
+
+    def _on_offer(self) -> dict[tuple[int, int], int]:
+        offered: dict[tuple[int, int], int] = {}
+        for option in (option for options in self.options for option in options):
+            for pick in option.choice.picks:
+                offered[pick] = self.guards.either(offered.get(pick, FALSE), option.alive)
+        return offered
 
     def _selected(self, options: list[_Option]) -> list[int]:
         """For each choice of a group: it is the first that is left."""

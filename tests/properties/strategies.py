@@ -23,7 +23,7 @@ from rplan.goals.condition import (
     Term,
     print_condition,
 )
-from rplan.goals.goal import And, Anything, Do, Goal, Goals, If, Or, Output, PrioAnd, walk
+from rplan.goals.goal import And, Anything, Do, Goal, Goals, If, Impossible, Or, Output, PrioAnd, walk
 from rplan.goals.signature import BOOL
 from rplan.lang.plan import Comparator, Type
 from rplan.lang.source import NOWHERE
@@ -83,6 +83,7 @@ def goals(*, alternatives: bool = True, numbers: bool = False, max_leaves: int =
         st.builds(do, st.sampled_from(OUTPUTS), st.sampled_from(VALUES)),
         st.builds(do, st.sampled_from(OUTPUTS), st.sampled_from(VALUES)),
         st.just(Anything("(goalem)", NOWHERE)),
+        st.just(Impossible(NOWHERE)),
     )
 
     def extend(inner: st.SearchStrategy[Goal]) -> st.SearchStrategy[Goal]:
