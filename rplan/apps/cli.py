@@ -14,8 +14,12 @@ import click
 COMMANDS = {
     "check": "Say what is wrong with a plan before it runs.",
     "compile": "Compile a plan and say what a tick costs.",
+    "diff": "Say in which situations two plans differ.",
+    "fmt": "Lay out the text of plans, comments and all.",
     "list": "List plans, libraries and what they offer.",
+    "prove": "Prove what a plan promises, or show how it breaks it.",
     "simulate": "Drive a robot through a world by a plan.",
+    "test": "Run the tests that stand in a plan.",
     "tick": "Run a plan alone: percepts in, outputs out, one JSON object a line.",
     "ways": "List the ways of a plan; --paper counts them as the paper does.",
 }

@@ -1,7 +1,7 @@
-"""Every situation of a plan at once, where its atoms are few and independent.
+"""Every situation of a plan at once, where its atoms and registers are few.
 
-Takes: `Ways`. Gives: in how many situations a guard holds, how many ways are taken. Leaves alone: plans that
-compare numbers, whose atoms imply one another; coverage.py decides those.
+Takes: `Ways`. Gives: in how many situations a guard holds, how many ways are taken; for plans with memory an `Automaton`,
+which knows in which tick a state can first be. Leaves alone: plans with more; see reach.py.
 
 A guard is evaluated once on integers that carry one bit a situation, so 4,096 situations cost as much as one.
 """
@@ -9,15 +9,21 @@ A guard is evaluated once on integers that carry one bit a situation, so 4,096 s
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import reduce as fold
+from itertools import product
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rplan.goals.condition import Percept
 from rplan.ways.guards import Guards
 from rplan.ways.reduce import Ways
+from rplan.ways.situations import Question, Unrolling, cone, negated
 
 MOST_ATOMS = 20
-SAMPLES = 1_024
+MOST_BITS = 16
+"""Of atoms and registers together that an automaton has."""
+MOST_COMPARISONS = 6
 
 
 def has_comparisons(ways: Ways) -> bool:
@@ -37,33 +43,16 @@ def count_situations(ways: Ways, guard: int) -> int:
 
 def count_ways(ways: Ways) -> int:
     """How many different ways are taken in some situation."""
-    return _classes(ways, _every(ways), 1 << len(ways.atoms))
+    return classes(ways, _every(ways), (1 << (1 << len(ways.atoms))) - 1)
 
 
-def count_sampled_ways(ways: Ways) -> int:
-    """How many different ways are taken in some samples: at least so many there are."""
-    return _classes(ways, *samples(ways))
-
-
-def _classes(ways: Ways, values: list[int], situations: int) -> int:
-    """Into how many classes the ways' signatures part the situations."""
-    classes = [((1 << situations) - 1) ^ values[ways.hole]]
+def classes(ways: Ways, values: Sequence[int], situations: int) -> int:
+    """Into how many classes the ways' signatures part these situations, given as bits."""
+    parts = [part for part in [situations & ~values[ways.hole]] if part]
     for guard in dict.fromkeys(ways.signature()):
-        split = (part for known in classes for part in (known & values[guard], known & ~values[guard]))
-        classes = [part for part in split if part]
-    return len(classes)
-
-
-def samples(ways: Ways) -> tuple[list[int], int]:
-    """Every guard in some situations as bits, and their number: each percept alone true, alone false, and by chance."""
-    count = len(ways.atoms)
-    chance = np.random.default_rng(0)
-    alone, others = (1 << count) - 1, 2 * count
-    columns = [
-        1 << n | (alone ^ 1 << n) << count | int.from_bytes(chance.bytes(SAMPLES // 8), "little") << others
-        for n in range(count)
-    ]
-    return evaluate_many(ways.guards, columns, others + SAMPLES), others + SAMPLES
+        split = (part for known in parts for part in (known & values[guard], known & ~values[guard]))
+        parts = [part for part in split if part]
+    return len(parts)
 
 
 def _every(ways: Ways) -> list[int]:
@@ -99,3 +88,109 @@ def _column(atom: int, situations: int) -> int:
     block = ((1 << half) - 1) << half
     repeats = situations // (2 * half)
     return block * (((1 << (2 * half * repeats)) - 1) // ((1 << (2 * half)) - 1))
+
+
+# --- plans with memory ---
+
+
+class Automaton:
+    """All states of some registers under all values of some atoms.
+
+    Situation s is the atoms in the low bits of s and the registers above them.
+    """
+
+    def __init__(self, ways: Ways, registers: tuple[int, ...], atoms: tuple[int, ...], can_be: int) -> None:
+        self._ways = ways
+        self._size = 1 << len(registers) + len(atoms)
+        self._shape = (1 << len(registers), 1 << len(atoms))
+        columns = [_column(n, self._size) for n in range(len(atoms) + len(registers))]
+        self._of_atom = dict(zip(atoms, columns, strict=False))
+        self._of_register = dict(zip(registers, columns[len(atoms) :], strict=True))
+        self._values: dict[int, int] = {}
+        self._valid = can_be
+        for guard in ways.assumed:
+            self._valid &= self._value(guard)
+        self._depth = self._breadth_first(registers)
+
+    def first_tick(self, question: Question) -> int | None:
+        """The first tick in which the question can be answered."""
+        answering = self._valid
+        for guard, value in question:
+            answering &= self._value(guard) if value else ~self._value(guard)
+        ticks = self._depth[self._table(answering).any(axis=1) & (self._depth >= 0)]
+        return int(ticks.min()) if ticks.size else None
+
+    def _table(self, bits: int) -> NDArray[np.bool_]:
+        """By state and atoms."""
+        data = np.frombuffer(bits.to_bytes((self._size + 7) // 8, "little"), dtype=np.uint8)
+        return np.unpackbits(data, bitorder="little")[: self._size].reshape(self._shape).astype(bool)
+
+    def _breadth_first(self, registers: tuple[int, ...]) -> NDArray[np.int64]:
+        """For each state the first tick that can begin in it; -1: none."""
+        following = np.zeros(self._shape, dtype=np.int64)
+        for place, number in enumerate(registers):
+            following |= self._table(self._value(self._ways.registers[number].next)).astype(np.int64) << place
+        valid = self._table(self._valid)
+        depth = np.full(self._shape[0], -1, dtype=np.int64)
+        here = np.array([sum(self._ways.registers[n].initial << place for place, n in enumerate(registers))])
+        tick = 0
+        while here.size:
+            depth[here] = tick
+            after = np.unique(following[here][valid[here]])
+            here = after[depth[after] < 0]
+            tick += 1
+        return depth
+
+    def _value(self, guard: int) -> int:
+        if guard not in self._values:
+            for number in cone(self._ways, [guard]):
+                if number not in self._values:
+                    self._values[number] = self._evaluated(number)
+        return self._values[guard]
+
+    def _evaluated(self, number: int) -> int:
+        kind, a, b = self._ways.guards.nodes[number]
+        every = (1 << self._size) - 1
+        match kind:
+            case "constant":
+                return every if a else 0
+            case "atom":
+                return self._of_atom[a]
+            case "register":
+                return self._of_register[a]
+            case "not":
+                return self._values[a] ^ every
+            case "and":
+                return self._values[a] & self._values[b]
+            case "or":
+                return self._values[a] | self._values[b]
+
+
+def automaton(ways: Ways, registers: tuple[int, ...], atoms: tuple[int, ...]) -> Automaton | None:
+    """The automaton of these registers and atoms; None where there are too many of them."""
+    if len(registers) + len(atoms) > MOST_BITS:
+        return None
+    can_be = _can_be(ways, atoms, 1 << len(registers) + len(atoms))
+    return None if can_be is None else Automaton(ways, registers, atoms, can_be)
+
+
+def _can_be(ways: Ways, atoms: tuple[int, ...], situations: int) -> int | None:
+    """The situations that numbers do not rule out, as bits; None where that is not decided."""
+    places = [place for place, number in enumerate(atoms) if not isinstance(ways.atoms[number], Percept)]
+    every = (1 << situations) - 1
+    if len(places) > MOST_COMPARISONS:
+        return None
+    unrolling = Unrolling(ways, first=True)
+    asked = [unrolling.comparison(0, atoms[place]) for place in places]
+    can_be = 0
+    for values in product((False, True), repeat=len(places)):
+        answer = unrolling.check([one if value else negated(one) for one, value in zip(asked, values, strict=True)])
+        if not isinstance(answer, bool):
+            return None
+        if answer:
+            columns = [
+                _column(place, situations) ^ (0 if value else every)
+                for place, value in zip(places, values, strict=True)
+            ]
+            can_be |= fold(int.__and__, columns, every)
+    return can_be

@@ -100,7 +100,7 @@ def _because(ways: Ways, node: int, before: int, values: list[bool], acts: tuple
         return f"it comes after {label(ways.layout.members[before].goal)}, which is given up"
     set_to = {act.output: act for act in acts}
     wanted: dict[str, str] = {}
-    for do in _wants(ways, node, values):
+    for do in wants(ways, node, values):
         other = set_to.get(do.output)
         if other is not None and other.value != do.value.text:
             return f"{do.output} would be {do.value.text}, and {other.rule} sets it to {other.value}"
@@ -109,7 +109,7 @@ def _because(ways: Ways, node: int, before: int, values: list[bool], acts: tuple
     return "no alternative of it goes together with what is kept"
 
 
-def _wants(ways: Ways, number: int, values: list[bool]) -> list[Do]:
+def wants(ways: Ways, number: int, values: list[bool]) -> list[Do]:
     """What a goal must set in this situation, alternatives left out."""
     node = ways.layout.nodes[number]
     inside = ways.layout.inside[number]
@@ -117,9 +117,9 @@ def _wants(ways: Ways, number: int, values: list[bool]) -> list[Do]:
         case Do():
             return [node.goal]
         case If():
-            return _wants(ways, inside[0 if values[ways.asked[number]] else 1], values)
+            return wants(ways, inside[0 if values[ways.asked[number]] else 1], values)
         case Or():
             return []
         case _:
             must = [child for child in inside if ways.layout.nodes[child].owner == node.owner]
-            return [do for child in must for do in _wants(ways, child, values)]
+            return [do for child in must for do in wants(ways, child, values)]

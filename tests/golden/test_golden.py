@@ -19,7 +19,8 @@ from rplan.driver import Compiled
 from rplan.goals.goal import print_goal
 from rplan.lang.printer import print_plan
 from rplan.lang.source import Source
-from rplan.ways.coverage import Situations, atom_value
+from rplan.ways.listing import taken_ways
+from rplan.ways.situations import replay
 from rplan.ways.way import TakenWay, taken_way
 
 HERE = Path(__file__).parent
@@ -58,8 +59,8 @@ def ways(plan: Compiled) -> list[str]:
 
 
 def every_way(plan: Compiled) -> list[TakenWay]:
-    witnesses = Situations(plan.ways).taken_ways(1_000)
-    return [taken_way(plan.ways, [atom_value(atom, seen) for atom in plan.ways.atoms]) for seen in witnesses]
+    last = [replay(plan.ways, trace) for trace in taken_ways(plan.ways, 1_000)]
+    return [taken_way(plan.ways, seen.atoms, seen.registers) for seen in last]
 
 
 def one(way: TakenWay) -> str:

@@ -9,10 +9,13 @@ from properties.strategies import EVERY_ORDER, goals, whole
 from properties.texts import Values, as_text, compiled, decider, holds, said, situation, situations
 
 from rplan.goals.goal import Do, Goal, walk
-from rplan.ways.coverage import Situations, Undecided
+from rplan.ways.checks.branches import NEVER_DONE
+from rplan.ways.coverage import review
 from rplan.ways.exhaust import count_situations, exhaustible
 from rplan.ways.meaning import taken
+from rplan.ways.reach import Reach
 from rplan.ways.reduce import reduce
+from rplan.ways.situations import Undecided
 
 
 def text_of(goal: Goal, data: st.DataObject) -> str:
@@ -46,10 +49,11 @@ def test_a_hole_is_found_where_there_is_one_with_a_witness_of_fewest_true_percep
     plan = compiled(f"(goalem {as_text(goal, lambda: False, [])})", allow_holes=True)
     holes = [values for values in situations(goal, EVERY_ORDER) if taken(goal, situation(goal, values)) is None]
     assert ("hole" in said(plan.diagnostics)) == bool(holes)
-    witness = Situations(plan.ways).witness(plan.ways.hole)
-    assert not isinstance(witness, Undecided)
-    assert (witness is not None) == bool(holes)
-    if witness is not None:
+    trace = Reach(plan.ways).trace((plan.ways.hole, True))
+    assert not isinstance(trace, Undecided)
+    assert (trace is not None) == bool(holes)
+    if trace is not None:
+        (witness,) = trace
         assert taken(goal, situation(goal, witness)) is None
         assert true_percepts(witness) == min(map(true_percepts, holes))
         assert [*witness] == [*holes[0]], "in textual order"
@@ -57,14 +61,16 @@ def test_a_hole_is_found_where_there_is_one_with_a_witness_of_fewest_true_percep
 
 @settings(max_examples=80, deadline=None, derandomize=True)
 @given(goals(numbers=True, max_leaves=7))
-def test_an_act_is_called_dead_exactly_where_no_situation_does_it(goal: Goal) -> None:
+def test_an_act_is_said_never_to_be_done_exactly_where_no_situation_does_it(goal: Goal) -> None:
     plan = compiled(f"(goalem {as_text(goal, lambda: False, [])})", allow_holes=True)
     done = set()
     for values in situations(goal, EVERY_ORDER):
         seen = plan.ways.guards.evaluate([holds(atom, values) for atom in plan.ways.atoms])
         done |= {node.goal.span for node in plan.ways.layout.nodes if seen[plan.ways.reached[node.number]]}
     every = {node.span for node in walk(plan.goals.top) if isinstance(node, Do)}
-    assert {d.span for d in plan.diagnostics if d.code == "dead"} == every - done
+    if any(node.span in done for node in walk(plan.goals.top)):
+        never = {r.span for d in review(plan.ways) for r in d.related if r.message == NEVER_DONE}
+        assert never == every - done
 
 
 @settings(max_examples=150, deadline=None, derandomize=True)

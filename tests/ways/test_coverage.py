@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import pytest
+import z3
 from properties.texts import compiled, findings, said
 
 from rplan.driver import Compiled
 from rplan.lang.diagnostic import Diagnostic
 from rplan.ways import coverage
-from rplan.ways.coverage import Situations, Undecided, describe
 from rplan.ways.guards import FALSE
+from rplan.ways.listing import taken_ways
+from rplan.ways.reach import Reach
+from rplan.ways.situations import Undecided, describe, replay
 
 
 def hole(text: str) -> Diagnostic:
@@ -77,27 +80,23 @@ def test_a_plan_that_always_contradicts_itself_has_a_hole_always() -> None:
 
 def test_where_the_solver_gives_up_the_plan_is_said_to_be_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
     plan = compiled("(goalem (and (when (p) (do x a)) (when (q) (do x b))))", allow_holes=True)
-    unknown = coverage.z3.unknown
-    monkeypatch.setattr(coverage.z3.Solver, "check", lambda solver, *assumptions: unknown)
-    assert isinstance(Situations(plan.ways).witness(plan.ways.hole), Undecided)
-    assert isinstance(Situations(plan.ways).possible(FALSE), Undecided)
+    monkeypatch.setattr(z3.Solver, "check", lambda solver, *assumptions: z3.unknown)
+    reach = Reach(plan.ways)
+    assert isinstance(reach.trace((plan.ways.hole, True)), Undecided)
+    assert isinstance(reach.possible((FALSE, True)), Undecided)
     (found,) = coverage.find(plan.ways)
     assert (found.code, found.severity) == ("not-decided", "warning")
 
 
 def ways(plan: Compiled, limit: int = 99) -> list[str]:
-    return sorted(describe(witness, plan.ways) for witness in Situations(plan.ways).taken_ways(limit))
+    return sorted(describe(trace, plan.ways) for trace in taken_ways(plan.ways, limit))
 
 
 def test_every_way_that_can_be_taken_has_its_situation() -> None:
     plan = compiled("(goalem (if (p) (do x a) (if (> (d) 1m) (do x b) (do x c))))")
-    witnesses = [*Situations(plan.ways).taken_ways(99)]
-    assert len(witnesses) == 3
-    reached = {
-        tuple(plan.ways.guards.evaluate([coverage.atom_value(atom, w) for atom in plan.ways.atoms])[g] for g in guards)
-        for w in witnesses
-        for guards in [plan.ways.sets["x"].values()]
-    }
+    traces = [*taken_ways(plan.ways, 99)]
+    assert len(traces) == 3
+    reached = {tuple(replay(plan.ways, t).guards[g] for g in plan.ways.sets["x"].values()) for t in traces}
     assert reached == {(True, False, False), (False, True, False), (False, False, True)}
 
 
@@ -105,3 +104,8 @@ def test_no_more_ways_are_sought_than_asked_for_and_holes_are_no_ways() -> None:
     plan = compiled("(goalem (and (when (p) (do x a)) (when (q) (do x b))))", allow_holes=True)
     assert len(ways(plan, 2)) == 2
     assert ways(plan) == ["(p) and not (q)", "not (p) and (q)", "not (p) and not (q)"]
+
+
+def test_ways_that_wait_for_the_past_are_listed_with_the_ticks_that_lead_there() -> None:
+    plan = compiled("(goalem (if (held-for 0.3s (p)) (do x a) (do x b)))")
+    assert ways(plan) == ["not (p)", "ticks 0 to 2: (p)"]

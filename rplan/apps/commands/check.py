@@ -2,23 +2,32 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import click
 
 from rplan.apps import talk
 from rplan.apps.files import plan_file
+from rplan.ways.coverage import review
 
 
 @click.command("check", short_help="Say what is wrong with a plan before it runs.")
 @click.argument("plan")
 @click.option("--strict", is_flag=True, help="A name that nothing declares is an error.")
 @click.option("--allow-holes", is_flag=True, help="A hole is a warning.")
-@click.option("--json", "as_json", is_flag=True, help="For programs.")
-def command(plan: str, strict: bool, allow_holes: bool, as_json: bool) -> None:
-    """Check PLAN: malformed or untyped text, goals without a rule, circles, holes (with a witness), dead acts.
+@click.option("--verbose", is_flag=True, help="Also notes: what never goes together, ties, outputs of one value.")
+@click.option("--json", "as_json", is_flag=True, help="For programs; has the notes too.")
+def command(plan: str, strict: bool, allow_holes: bool, verbose: bool, as_json: bool) -> None:
+    """Check PLAN: malformed or untyped text, goals without a rule, circles, holes, parts that are never reached.
 
-    PLAN is a file, a folder with one plan, or the name of a plan that comes with rplan. Exit code 1 if it is wrong.
+    What a situation shows comes with the simplest one. PLAN is a file, a folder with one plan, or the name of a plan
+    that comes with rplan. Exit code 1 if it is wrong.
     """
-    compiled = talk.compiled(plan_file(plan), strict=strict, allow_holes=allow_holes, as_json=as_json)
+    checks = partial(review, notes=verbose or as_json)
+    path = plan_file(plan)
+    compiled = talk.compiled(
+        path, strict=strict, allow_holes=allow_holes, as_json=as_json, checks=checks, verbose=verbose
+    )
     if as_json:
         talk.result({"ok": True, "diagnostics": [talk.as_plain(d) for d in compiled.diagnostics]})
     else:

@@ -9,21 +9,27 @@ import click
 
 from rplan.apps import talk
 from rplan.apps.drawing.dot import dot
-from rplan.apps.files import plan_file, unreadable
-from rplan.backends.python import emit
+from rplan.apps.drawing.svg import svg
+from rplan.apps.files import InputError, plan_file, unreadable
+from rplan.backends.c import emit_c
+from rplan.backends.python import emit, generate
 from rplan.circuit.circuit import Circuit, print_circuit
 from rplan.circuit.stats import stats
 from rplan.driver import Compiled
-from rplan.ways.coverage import Situations
-from rplan.ways.exhaust import count_sampled_ways, count_ways, exhaustible, has_comparisons
+from rplan.ways.exhaust import count_ways, exhaustible, has_comparisons
+from rplan.ways.listing import taken_ways
+from rplan.ways.sample import Samples
 
 MOST_WAYS = 64
 """Ways of a plan that compares numbers are counted up to here."""
 
 
+FORMS = ("sexp", "json", "dot", "svg", "python", "c")
+
+
 @click.command("compile", short_help="Compile a plan and say what a tick costs.")
 @click.argument("plan")
-@click.option("--emit", "form", type=click.Choice(["sexp", "json", "python", "dot"]), help="Print the circuit so.")
+@click.option("--emit", "form", type=click.Choice(FORMS), help="Print the circuit so.")
 @click.option("-o", "--output", type=click.Path(dir_okay=False, writable=True), help="Write it to a file.")
 @click.option("--strict", is_flag=True, help="A name that nothing declares is an error.")
 @click.option("--allow-holes", is_flag=True, help="A hole is a warning.")
@@ -34,10 +40,10 @@ def command(plan: str, form: str | None, output: str | None, strict: bool, allow
     if form is not None:
         _write(_emitted(compiled.circuit, form), output)
         return
-    costs = stats(compiled.circuit)
     ways, exact = _count(compiled)
     if as_json:
-        talk.result({"plan": compiled.goals.name, "ways": ways, "ways_exact": exact, **asdict(costs)})
+        costs = {**asdict(stats(compiled.circuit)), "longest_path_in_python": generate(compiled.circuit).longest}
+        talk.result({"plan": compiled.goals.name, "ways": ways, "ways_exact": exact, **costs})
         return
     _write(_report(compiled, ways, exact), output)
 
@@ -48,9 +54,9 @@ def _count(compiled: Compiled) -> tuple[int, bool]:
     if exhaustible(ways):
         return count_ways(ways), True
     if not has_comparisons(ways):
-        return count_sampled_ways(ways), False
-    found = sum(1 for _ in Situations(ways).taken_ways(MOST_WAYS))
-    return found, found < MOST_WAYS
+        return Samples(ways).count_ways(), False
+    found = sum(1 for _ in taken_ways(ways, MOST_WAYS))
+    return found, found < MOST_WAYS and not ways.driving
 
 
 def _report(compiled: Compiled, ways: int, exact: bool) -> str:
@@ -63,6 +69,7 @@ def _report(compiled: Compiled, ways: int, exact: bool) -> str:
         ("gates", f"{costs.gates:,}"),
         ("depth", f"{costs.depth:,}"),
         ("operations a tick", f"{costs.operations:,}"),
+        ("longest path in Python", f"{generate(compiled.circuit).longest:,}"),
     ]
     lines = [f"{compiled.goals.name}: a tick every {compiled.goals.period:g} s"]
     return "\n".join(lines + [f"  {name:<24}{value:>10}" for name, value in rows]) + "\n"
@@ -76,8 +83,19 @@ def _emitted(circuit: Circuit, form: str) -> str:
             return emit(circuit)
         case "dot":
             return dot(circuit)
+        case "svg":
+            return _drawn(circuit)
+        case "c":
+            return emit_c(circuit)
         case _:
             return _json(circuit)
+
+
+def _drawn(circuit: Circuit) -> str:
+    try:
+        return svg(circuit)
+    except ValueError as error:
+        raise InputError(str(error)) from error
 
 
 def _json(circuit: Circuit) -> str:

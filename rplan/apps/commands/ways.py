@@ -11,8 +11,9 @@ from rplan.apps.files import plan_file
 from rplan.driver import Compiled
 from rplan.runtime.trace import way_json
 from rplan.ways.count import PaperCount, count
-from rplan.ways.coverage import Situations, Witness, atom_value
 from rplan.ways.exhaust import count_situations, exhaustible
+from rplan.ways.listing import taken_ways
+from rplan.ways.situations import Trace, replay
 from rplan.ways.way import Branch, TakenWay, taken_way
 
 LIMIT = 200
@@ -57,7 +58,7 @@ def _holes(compiled: Compiled) -> tuple[int, int] | None:
 def _list(compiled: Compiled, limit: int, as_json: bool) -> None:
     found = list(_taken(compiled, limit))
     if as_json:
-        ways = [dict(way_json(way)) | {"when": dict(witness)} for witness, way in found]
+        ways = [dict(way_json(way)) | {"when": dict(trace[-1])} | _before(trace) for trace, way in found]
         talk.result({"plan": compiled.goals.name, "ways": ways, "cut_short": len(found) == limit})
         return
     for number, (_, way) in enumerate(found, start=1):
@@ -70,13 +71,17 @@ def _list(compiled: Compiled, limit: int, as_json: bool) -> None:
     click.echo(f"{len(found)} ways can be taken{more}")
 
 
-def _taken(compiled: Compiled, limit: int) -> Iterator[tuple[Witness, TakenWay]]:
+def _before(trace: Trace) -> dict[str, object]:
+    """The ticks that lead there, where it takes some."""
+    return {"before": [dict(tick) for tick in trace[:-1]]} if len(trace) > 1 else {}
+
+
+def _taken(compiled: Compiled, limit: int) -> Iterator[tuple[Trace, TakenWay]]:
     """The ways in the order of their places in the text, each with its simplest situation."""
-    situations = Situations(compiled.ways)
     found = []
-    for witness in situations.taken_ways(limit):
-        atoms = [atom_value(atom, witness) for atom in compiled.ways.atoms]
-        found.append((witness, taken_way(compiled.ways, atoms)))
+    for trace in taken_ways(compiled.ways, limit):
+        seen = replay(compiled.ways, trace)
+        found.append((trace, taken_way(compiled.ways, seen.atoms, seen.registers)))
     yield from sorted(found, key=lambda pair: _rank(pair[1]))
 
 

@@ -1,0 +1,1 @@
+"""Checks before running, a few to a file. Each takes a `Reach` and gives diagnostics; see rplan/ways/coverage.py."""
