@@ -212,7 +212,8 @@ def test_every_command_that_reports_speaks_json(write: Write) -> None:
     assert [one["severity"] for one in checked["diagnostics"]] == ["note"]
     costs = read("compile", FIND)
     assert (costs["plan"], costs["ways"], costs["inputs"], costs["registers"]) == ("find-and-fetch", 19, 12, 0)
-    assert costs["operations"] == costs["gates"] > 50
+    assert costs["operations"] == costs["gates"] > 30
+    assert 0 < costs["longest_path_in_python"] < costs["gates"]
     assert {plan["plan"].split("/")[-1] for plan in read("list")["plans"]} >= {"find_and_fetch.rplan", "text.rplan"}
     assert read("list", "runaway")["name"] == "runaway"
     assert read("ways", TEXT, "--paper") == {"ways": 63, "distinct": 36, "taken": 31, "situations": 4096, "holes": 0}
@@ -238,6 +239,7 @@ def test_a_report_says_what_a_tick_costs() -> None:
     assert lines[0] == "find-and-fetch: a tick every 0.1 s"
     assert [line.rsplit(maxsplit=1)[0].strip() for line in lines[1:]] == [
         "ways that can be taken", "inputs", "outputs", "registers", "gates", "depth", "operations a tick",
+        "longest path in Python",
     ]  # fmt: skip
 
 
@@ -245,8 +247,10 @@ def test_a_report_says_what_a_tick_costs() -> None:
     ("form", "begins"),
     [
         ("sexp", "(circuit find-and-fetch"),
-        ("python", "def tick("),
+        ("python", "# Longest path: "),
+        ("c", "/* find-and-fetch\n"),
         ("dot", 'digraph "find-and-fetch" {'),
+        ("svg", "<svg "),
         ("json", "{"),
     ],
 )
