@@ -10,17 +10,18 @@ from properties.texts import compiled, findings, said
 from rplan.circuit.build import build
 from rplan.circuit.passes import run
 from rplan.circuit.stats import stats
-from rplan.driver import NO_LIBRARIES, load
+from rplan.driver import NO_LIBRARIES
 from rplan.goals.expand import expand
 from rplan.lang.depth import deep_recursion
 from rplan.lang.diagnostic import PlanError
+from rplan.lang.parse import parse_text
 from rplan.lang.source import Source
 from rplan.ways.reduce import reduce
 
 
 def gates(text: str) -> int:
     with deep_recursion():
-        goals, _ = expand(load(Source("test.rplan", text))[0], NO_LIBRARIES)
+        goals, _ = expand(parse_text(Source("test.rplan", text))[0], NO_LIBRARIES)
         return stats(run(build(reduce(goals)))).gates
 
 
@@ -78,7 +79,7 @@ def test_alternatives_share_an_output_also_through_others() -> None:
 
 
 def refused(text: str, limit: int) -> bool:
-    goals, _ = expand(load(Source("test.rplan", text))[0], NO_LIBRARIES)
+    goals, _ = expand(parse_text(Source("test.rplan", text))[0], NO_LIBRARIES)
     try:
         reduce(goals, limit=limit)
     except PlanError as error:
