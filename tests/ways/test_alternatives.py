@@ -112,7 +112,8 @@ def test_a_choice_that_one_branch_has_more_is_open_only_there() -> None:
 
 @pytest.mark.rule("L18")
 def test_a_choice_that_only_the_first_branch_has_does_not_hide_a_hole_of_the_other() -> None:
-    text = "(goalem (and (if (c) (or (do x one) (do x two)) (do x three)) (when (d) (do x two))))"
+    branches = "(if (c) (or (do x one) (do x two) (do x three)) (or (do x four) (do x five)))"
+    text = f"(goalem (and {branches} (when (d) (do x three))))"
     plan = compiled(text, allow_holes=True)
     holes = [(c, d) for c in (False, True) for d in (False, True) if plan.ways.guards.evaluate([c, d])[plan.ways.hole]]
     assert holes == [(False, True)]
