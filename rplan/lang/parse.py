@@ -118,13 +118,22 @@ def parse(forms: Sequence[Form], source: Source) -> tuple[Plan, tuple[Diagnostic
 
 def parse_text(source: Source) -> tuple[Plan, tuple[Diagnostic, ...]]:
     """`read` and `parse` in one, so that errors of the text and errors of the forms are told together."""
+    plan, found = parse_with_errors(source)
+    return _plan_or_error(plan, found)
+
+
+def parse_with_errors(source: Source) -> tuple[Plan, tuple[Diagnostic, ...]]:
+    """As `parse_text`, but what is wrong has a placeholder in the plan, so that the rest can be looked at.
+
+    Raises PlanError where nothing could be read.
+    """
     forms, errors = read_with_errors(source)
     if errors and not forms:
         raise PlanError(capped(errors))
     parser = _Parser(source)
     with deep_recursion():
         plan = parser.plan(forms)
-    return _plan_or_error(plan, [*errors, *parser.found])
+    return plan, tuple(sorted([*errors, *parser.found], key=lambda diagnostic: diagnostic.span))
 
 
 def _plan_or_error(plan: Plan, found: Iterable[Diagnostic]) -> tuple[Plan, tuple[Diagnostic, ...]]:
@@ -447,15 +456,20 @@ class _Parser:
     def _if(self, form: ListForm, level: int) -> Goal:
         rest = form.items[1:]
         if not self._count("if", form, rest, 3):
-            return Anything(form.span)
+            return self._when_like(rest, form.span, level)
         condition = self.condition(rest[0])
         return If(condition, self.goal(rest[1], level + 1), self.goal(rest[2], level + 1), form.span)
 
     def _when(self, form: ListForm, level: int) -> Goal:
         rest = form.items[1:]
-        if not self._count("when", form, rest, 2):
-            return Anything(form.span)
-        return If(self.condition(rest[0]), self.goal(rest[1], level + 1), Anything(form.span), form.span)
+        self._count("when", form, rest, 2)
+        return self._when_like(rest, form.span, level)
+
+    def _when_like(self, rest: Sequence[Form], span: Span, level: int) -> Goal:
+        """A condition and a goal, as far as they are there."""
+        if len(rest) < 2:
+            return Anything(span)
+        return If(self.condition(rest[0]), self.goal(rest[1], level + 1), Anything(span), span)
 
     def _cond(self, form: ListForm, level: int) -> Goal:
         """Nested ifs, each with the place of its clause."""
