@@ -275,3 +275,10 @@ def test_plans_of_an_installed_rplan_come_from_its_own_folder(tmp_path: Path, mo
     (tmp_path / "patrol" / "patrol.rplan").write_text("(goalem (do anything))")
     monkeypatch.setattr(files, "PACKAGED", tmp_path)
     assert [path.name for path in files.packaged_plans()] == ["patrol.rplan"]
+
+
+@pytest.mark.rule("L24")
+def test_a_recording_that_finds_no_room_on_the_disk_is_told_plainly() -> None:
+    result = simulate(FIND, "--until", "1", "--record", "/dev/full")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "/dev/full: the recording cannot be written" in result.stderr
