@@ -108,9 +108,13 @@ class Recorder:
         self._tick = Channel("/tick", message_encoding="json", context=context)
         self._pose = PoseInFrameChannel("/pose", context=context)
         self._count = 0
-        with _as_oserror():
-            header_channel.log(json_text({"format": FORMAT, **header}).encode(), log_time=0)
-            self._writer.flush()
+        try:
+            with _as_oserror():
+                header_channel.log(json_text({"format": FORMAT, **header}).encode(), log_time=0)
+                self._writer.flush()
+        except OSError:
+            self._file.close()
+            raise
 
     def tick(self, t: float, world: Json, note_json: str) -> None:
         """Append one tick: simulated time [s], the world's snapshot, the brain's note as JSON text ("null": none)."""
