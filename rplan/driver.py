@@ -6,7 +6,12 @@ is to be said of it; `PlanError` with everything that is wrong. Leaves alone: ro
 
 from __future__ import annotations
 
+<<<<<<< HEAD
 from collections.abc import Callable, Iterable, Mapping
+=======
+import re
+from collections.abc import Mapping
+>>>>>>> main
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import NamedTuple
@@ -19,10 +24,15 @@ from rplan.goals.goal import Goals
 from rplan.goals.signature import Libraries
 from rplan.lang.depth import deep_recursion
 from rplan.lang.diagnostic import Diagnostic, PlanError
+<<<<<<< HEAD
 from rplan.lang.include import OpenFile, gather, no_files
 from rplan.lang.parse import parse_gathered
+=======
+from rplan.lang.parse import parse_with_errors
+>>>>>>> main
 from rplan.lang.plan import Plan
-from rplan.lang.source import Source
+from rplan.lang.reader import capped
+from rplan.lang.source import Source, Span
 from rplan.ways.coverage import find
 from rplan.ways.reduce import Ways, reduce
 
@@ -53,6 +63,7 @@ class Compiled:
         return texts_of(self.sources or (self.source,))
 
 
+<<<<<<< HEAD
 def texts_of(sources: Iterable[Source]) -> Mapping[str, str]:
     """File name -> text."""
     return {source.name: source.text for source in sources}
@@ -84,6 +95,8 @@ def no_checks(ways: Ways) -> tuple[Diagnostic, ...]:  # noqa: ARG001
     return ()
 
 
+=======
+>>>>>>> main
 def compile_plan(
     source: Source,
     libraries: Libraries = NO_LIBRARIES,
@@ -99,16 +112,57 @@ def compile_plan(
     is wrong; what was only noticed is in `Compiled.diagnostics`.
     """
     with deep_recursion():
+<<<<<<< HEAD
         loaded = load(source, open_file)
         found = list(loaded.diagnostics)
+=======
+        plan, said = parse_with_errors(source)
+        found = list(said)
+        broken = any(diagnostic.severity == "error" for diagnostic in said)
+>>>>>>> main
         try:
             goals, noticed = expand(loaded.plan, libraries, strict=strict)
             found += noticed
-            ways = reduce(goals)
+            ways = reduce(goals) if not broken else None
         except PlanError as error:
+<<<<<<< HEAD
             raise PlanError([*found, *error.diagnostics], texts_of(loaded.sources)) from None
         found += [*find(ways, allow_holes=allow_holes), *checks(ways)]
         if any(diagnostic.severity == "error" for diagnostic in found):
             raise PlanError(found, texts_of(loaded.sources))
         circuit = passes.run(build(ways))
         return Compiled(source, loaded.plan, goals, ways, circuit, tuple(found), loaded.sources)
+=======
+            more = [d for d in error.diagnostics if not broken or _stands_alone(d, said, source)]
+            every = [*found, *more]
+            raise PlanError(capped(sorted(every, key=lambda d: d.span)) if broken else every) from None
+        if ways is None:
+            raise PlanError(capped(said))
+        found += find(ways, allow_holes=allow_holes)
+        if any(diagnostic.severity == "error" for diagnostic in found):
+            raise PlanError(found)
+        return Compiled(source, plan, goals, ways, passes.run(build(ways)), tuple(found))
+
+
+LOCAL = (
+    "misspelt", "unknown-library", "unknown-parameter", "type-mismatch", "unit-mismatch", "wrong-arity", "no-rule",
+    "two-channels", "goal-circle", "condition-circle",
+)  # fmt: skip
+"""What is wrong with names and types whatever else is wrong with the text."""
+
+
+def _stands_alone(found: Diagnostic, before: tuple[Diagnostic, ...], source: Source) -> bool:
+    """Whether a finding in a plan with placeholders would be there without them: one mistake is told once."""
+    if found.code not in LOCAL or "``" in found.message:
+        return False
+    if found.code == "no-rule" and any(one.code.endswith("-parenthesis") for one in before):
+        head = found.message.partition("`(")[2].partition(")")[0]
+        if re.search(rf"\(\s*defgoalr\s+\(\s*{re.escape(head)}[\s)]", source.text):
+            return False
+    return not any(_contains(found.span, one.span) for one in before if one.severity == "error")
+
+
+def _contains(outer: Span, inner: Span) -> bool:
+    begins = (outer.line, outer.column) <= (inner.line, inner.column)
+    return begins and (inner.end_line, inner.end_column) <= (outer.end_line, outer.end_column)
+>>>>>>> main

@@ -14,6 +14,7 @@ import json
 import math
 import struct
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from io import FileIO
 from pathlib import Path
@@ -107,30 +108,48 @@ class Recorder:
         self._tick = Channel("/tick", message_encoding="json", context=context)
         self._pose = PoseInFrameChannel("/pose", context=context)
         self._count = 0
-        header_channel.log(json_text({"format": FORMAT, **header}).encode(), log_time=0)
-        self._writer.flush()
+        try:
+            with _as_oserror():
+                header_channel.log(json_text({"format": FORMAT, **header}).encode(), log_time=0)
+                self._writer.flush()
+        except OSError:
+            self._file.close()
+            raise
 
     def tick(self, t: float, world: Json, note_json: str) -> None:
         """Append one tick: simulated time [s], the world's snapshot, the brain's note as JSON text ("null": none)."""
         nanoseconds = round(t * 1e9)
         note = _finite_text(note_json)
         text = f'{{"tick":{self._count},"t":{json_text(t)},"world":{json_text(world)},"plan":{note}}}'
-        self._tick.log(text.encode(), log_time=nanoseconds)
-        if pose := _pose(world, nanoseconds):
-            self._pose.log(pose, log_time=nanoseconds)
+        with _as_oserror():
+            self._tick.log(text.encode(), log_time=nanoseconds)
+            if pose := _pose(world, nanoseconds):
+                self._pose.log(pose, log_time=nanoseconds)
         self._count += 1
 
     def close(self) -> None:
         """Finish the file; the second call does nothing."""
         if not self._file.closed:
-            self._writer.close()
-            self._file.close()
+            try:
+                with _as_oserror():
+                    self._writer.close()
+            finally:
+                self._file.close()
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, fault: BaseException | None, at: TracebackType | None) -> None:
         self.close()
+
+
+@contextmanager
+def _as_oserror() -> Iterator[None]:
+    """What the writer says of a full disk is a RuntimeError; callers wait for an OSError."""
+    try:
+        yield
+    except RuntimeError as fault:
+        raise OSError(f"the recording cannot be written: {fault}") from fault
 
 
 # --- reading --------------------------------------------------------------------------------------

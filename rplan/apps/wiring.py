@@ -23,6 +23,7 @@ from rplan.runtime.controller import Controller, Tick, UnboundError
 from rplan.runtime.robot import Channels, Crew
 from rplan.runtime.tick import Decider
 from rplan.runtime.trace import Trace
+from sim.world import TICK
 
 
 def signature(library: Library) -> LibrarySignature:
@@ -101,9 +102,13 @@ def crew(compiled: Compiled) -> Crew[Command]:
 
 
 class PlanBrain:
-    """A plan as the brain of an episode. `PlanError` if nothing brings a function of the plan to life."""
+    """A plan as the brain of an episode.
+
+    `PlanError` if nothing brings a function of the plan to life, or if a tick of it is not one of the world.
+    """
 
     def __init__(self, compiled: Compiled) -> None:
+        _same_tick(compiled)
         self.compiled = compiled
         self.trace = Trace(compiled.ways, _show)
         self.tick: Tick[Command] | None = None
@@ -141,6 +146,14 @@ class PlanBrain:
     def close(self) -> None:
         """Stop what runs."""
         self._controller.close()
+
+
+def _same_tick(compiled: Compiled) -> None:
+    period = compiled.goals.period
+    if period != TICK:
+        message = f"a tick of the plan takes {period:g} s, and one of the simulated world {TICK:g} s"
+        hint = f"write `:period {TICK:g}s`"
+        raise PlanError([Diagnostic("other-tick", "error", message, compiled.plan.header.span, hint=hint)])
 
 
 def plan_header(compiled: Compiled, sha256: str) -> Mapping[str, object]:

@@ -56,18 +56,26 @@ class InternalError(Exception):
     """rplan itself is wrong."""
 
 
+GARBLED = "\ufffd"
+"""Stands for what a terminal would obey instead of print; a line full of it is not shown."""
+WIDEST = 120
+"""Columns of a line of the text that are shown, at most."""
+
+
 def _place(span: Span, message: str, texts: Mapping[str, str]) -> list[str]:
     lines = texts.get(span.file, "").split("\n")
     out = [f"  --> {span}" + (f"    {message}" if message else "")]
-    if 1 <= span.line <= len(lines) and lines[span.line - 1].strip():
-        line = lines[span.line - 1].replace("\t", " ")
-        end = span.end_column if span.end_line == span.line else len(line) + 1
-        number = str(span.line)
-        out += [
-            f"   {number} | {line}",
-            f"   {' ' * len(number)} | {' ' * (span.column - 1)}{'^' * max(1, end - span.column)}",
-        ]
-    return out
+    line = lines[span.line - 1].replace("\t", " ").rstrip() if 1 <= span.line <= len(lines) else ""
+    line = "".join(character if character.isprintable() else GARBLED for character in line)
+    if not line or line.count(GARBLED) > len(line) // 8:
+        return out
+    first = max(0, span.column - 1 - WIDEST // 2) if len(line) > WIDEST else 0
+    shown = line[first : first + WIDEST]
+    end = span.end_column if span.end_line == span.line else len(line) + 1
+    start = span.column - 1 - first
+    length = max(1, min(end - 1 - first, len(shown)) - start)
+    number = str(span.line)
+    return [*out, f"   {number} | {shown}", f"   {' ' * len(number)} | {' ' * start}{'^' * length}"]
 
 
 def render(diagnostic: Diagnostic, texts: Mapping[str, str]) -> str:

@@ -148,7 +148,7 @@ def parse(forms: Sequence[Form], source: Source) -> tuple[Plan, tuple[Diagnostic
     parser = _Parser(source)
     with deep_recursion():
         plan = parser.plan(forms)
-    return _plan_or_error(plan, parser.found)
+    return _plan_or_error(plan, sorted(parser.found, key=lambda diagnostic: diagnostic.span))
 
 
 def parse_text(source: Source) -> tuple[Plan, tuple[Diagnostic, ...]]:
@@ -157,25 +157,28 @@ def parse_text(source: Source) -> tuple[Plan, tuple[Diagnostic, ...]]:
     What the text includes is left alone; see `parse_gathered`.
     """
     forms, errors = read_with_errors(source)
-    return parse_gathered(Gathered([*forms], [source], [*errors]))
+    plan, found = parse_gathered(Gathered([*forms], [source], [*errors]))
+    return _plan_or_error(plan, found)
 
 
 def parse_gathered(gathered: Gathered) -> tuple[Plan, tuple[Diagnostic, ...]]:
-    """The plan of a text and of all that it includes; errors in the order of the files."""
+    """The plan of a text and of all that it includes, and everything found, in the order of the files.
+
+    What is wrong has a placeholder in the plan, so that the rest can be looked at. Raises PlanError where nothing could
+    be read.
+    """
     if gathered.errors and not gathered.forms:
         raise PlanError(capped(gathered.errors))
     parser = _Parser(gathered.sources[0])
     with deep_recursion():
         plan = parser.plan(gathered.forms)
-    names = [source.name for source in gathered.sources]
-    return _plan_or_error(plan, [*gathered.errors, *parser.found], names)
+    order = {source.name: number for number, source in enumerate(gathered.sources)}
+    found = [*gathered.errors, *parser.found]
+    return plan, tuple(sorted(found, key=lambda one: (order.get(one.span.file, 0), one.span)))
 
 
-def _plan_or_error(
-    plan: Plan, found: Iterable[Diagnostic], files: Sequence[str] = ()
-) -> tuple[Plan, tuple[Diagnostic, ...]]:
-    order = {name: number for number, name in enumerate(files)}
-    inorder = tuple(sorted(found, key=lambda one: (order.get(one.span.file, 0), one.span)))
+def _plan_or_error(plan: Plan, found: Iterable[Diagnostic]) -> tuple[Plan, tuple[Diagnostic, ...]]:
+    inorder = tuple(found)
     if any(diagnostic.severity == "error" for diagnostic in inorder):
         raise PlanError(capped(inorder))
     return plan, inorder
@@ -672,15 +675,20 @@ class _Parser:
     def _if(self, form: ListForm, level: int) -> Goal:
         rest = form.items[1:]
         if not self._count("if", form, rest, 3):
-            return Anything(form.span)
+            return self._when_like(rest, form.span, level)
         condition = self.condition(rest[0])
         return If(condition, self.goal(rest[1], level + 1), self.goal(rest[2], level + 1), form.span)
 
     def _when(self, form: ListForm, level: int) -> Goal:
         rest = form.items[1:]
-        if not self._count("when", form, rest, 2):
-            return Anything(form.span)
-        return If(self.condition(rest[0]), self.goal(rest[1], level + 1), Anything(form.span), form.span)
+        self._count("when", form, rest, 2)
+        return self._when_like(rest, form.span, level)
+
+    def _when_like(self, rest: Sequence[Form], span: Span, level: int) -> Goal:
+        """A condition and a goal, as far as they are there."""
+        if len(rest) < 2:
+            return Anything(span)
+        return If(self.condition(rest[0]), self.goal(rest[1], level + 1), Anything(span), span)
 
     def _cond(self, form: ListForm, level: int) -> Goal:
         """Nested ifs, each with the place of its clause."""

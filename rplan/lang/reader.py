@@ -16,6 +16,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Literal
 
 from lark import Lark, Token
 
@@ -201,6 +202,41 @@ def _end_of_region(text: str, start: int) -> int | None:
         if depth == 0:
             return edge.end()
     return None
+
+
+# --- words with comments --------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A word of the text as it stands there, or a comment. newlines: how many stand between it and what is before."""
+
+    kind: Literal["open", "close", "word", "comment", "region"]
+    text: str
+    newlines: int
+
+
+def pieces(text: str) -> Iterator[Piece]:
+    """The words and comments of a text that `read` takes, in order; white space between them is left out."""
+    done = position = 0
+    while match := _PIECE.search(text, position):
+        end = match.end()
+        kind = _KINDS.get(match[0][:2] if match[0].startswith("#|") else match[0][0], "word")
+        if kind == "region":
+            end = _end_of_region(text, end) or len(text)
+        yield Piece(kind, text[match.start() : end], text.count("\n", done, match.start()))
+        done = position = end
+
+
+def words_of(text: str) -> tuple[str, ...]:
+    """The words of such a text, without comments."""
+    return tuple(piece.text for piece in pieces(text) if piece.kind not in ("comment", "region"))
+
+
+_PIECE = re.compile(_BEFORE_REGION.pattern + r"|[()]", re.DOTALL)
+_KINDS: dict[str, Literal["open", "close", "word", "comment", "region"]] = {
+    "(": "open", ")": "close", ";": "comment", "#|": "region",
+}  # fmt: skip
 
 
 # --- words ----------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -331,3 +332,13 @@ def test_an_unknown_library_is_refused() -> None:
     result = rplan("list", "flying")
     assert (result.exit_code, result.stdout) == (2, "")
     assert "there are: robot, runaway" in result.stderr
+
+
+def test_the_ways_of_plans_that_are_large_or_compare_numbers_are_counted_too(write: Write) -> None:
+    many = write("(goalem (and " + " ".join(f"(when (p{n}) (do x{n} on))" for n in range(25)) + "))")
+    costs = read("compile", many)
+    assert costs["ways"] > 1_000
+    assert costs["ways_exact"] is False
+    assert re.search(r"ways that can be taken +≥ 1,", rplan("compile", many).stdout)
+    numbers = read("compile", write("(goalem (cond ((< (d) 2) (do x on)) ((< (d) 1) (do x off))))", "numbers.rplan"))
+    assert (numbers["ways"], numbers["ways_exact"]) == (2, True)

@@ -133,7 +133,7 @@ def test_without_matplotlib_it_says_how_to_get_it(
     for name in [name for name in sys.modules if name.startswith("matplotlib")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setattr(builtins, "__import__", without)
-    with pytest.raises(ImportError, match=r"pip install 'rplan\[plot\]'"):
+    with pytest.raises(ImportError, match=r"pip install matplotlib"):
         plot.draw(run, tmp_path / "run.png")
     assert not (tmp_path / "run.png").exists()
 

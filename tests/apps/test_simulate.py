@@ -61,6 +61,17 @@ def test_every_switch_says_what_made_it() -> None:
     assert re.search(r"0\.1 s +action +\(continue-ir-search\) +\(ir-search-has-been-started\) became true", out)
 
 
+def test_a_condition_that_changed_but_that_neither_way_asks_is_no_reason(nook: str, tmp_path: Path) -> None:
+    plan = tmp_path / "plan.rplan"
+    plan.write_text(
+        "(use robot) (defoutput action command)"
+        "(goalem (if (> (time-since-start) 0.5s) (do action (stop))"
+        " (when (> (time-since-start) 9s) (if (>= (time-since-start) 0.55s) (do action (stop)) (do anything)))))"
+    )
+    verdict = json.loads(simulate(str(plan), "--scenario", nook, "--until", "1", "--json").stdout)
+    assert [switch["because"] for switch in verdict["switches"]] == ["(> (time-since-start) 0.5s) became true"]
+
+
 @pytest.mark.rule("L24")
 def test_the_verdict_speaks_json() -> None:
     result = simulate(FIND, "--until", "5", "--json", "--seed", "3")
@@ -264,3 +275,10 @@ def test_plans_of_an_installed_rplan_come_from_its_own_folder(tmp_path: Path, mo
     (tmp_path / "patrol" / "patrol.rplan").write_text("(goalem (do anything))")
     monkeypatch.setattr(files, "PACKAGED", tmp_path)
     assert [path.name for path in files.packaged_plans()] == ["patrol.rplan"]
+
+
+@pytest.mark.rule("L24")
+def test_a_recording_that_finds_no_room_on_the_disk_is_told_plainly() -> None:
+    result = simulate(FIND, "--until", "1", "--record", "/dev/full")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "/dev/full: the recording cannot be written" in result.stderr

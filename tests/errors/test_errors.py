@@ -85,3 +85,21 @@ def test_five_mistakes_are_five_errors_with_their_places() -> None:
         ("bad-number", 9),
         ("missing-parenthesis", 10),
     ]
+
+
+def test_mistakes_of_text_of_form_and_of_name_are_told_together() -> None:
+    text = """(plan many :period 0.1m)
+(use runaway :safety-radius 2s)
+(defgoalr (maint a) (if (anything-is-too-closs) (do action (move-away-from-danger))))
+(defgoalr (ach b) (do action (move-away-from-danger))
+(goalem (and (maint a) (ach b) (ach c)))
+"""
+    codes = [(d.code, d.span.line) for d in findings(Source("many.rplan", text)) if d.severity == "error"]
+    assert codes == [
+        ("unit-mismatch", 1),
+        ("unit-mismatch", 2),
+        ("wrong-parts", 3),
+        ("misspelt", 3),
+        ("missing-parenthesis", 4),
+        ("no-rule", 5),
+    ]

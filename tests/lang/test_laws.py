@@ -15,8 +15,7 @@ from rplan.lang.reader import Form, ListForm, Numeral, Symbol, Text, read
 from rplan.lang.source import Source, Span
 from tests.properties.strategies_lang import mutated_texts, plan_texts, plans, without_places
 
-LAW = settings(derandomize=True, max_examples=80)
-"""With Hypothesis' own deadline of 200 ms for each text."""
+LAW = settings(max_examples=80)
 
 MANY = settings(LAW, max_examples=250)
 

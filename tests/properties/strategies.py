@@ -63,10 +63,11 @@ def comparisons() -> st.SearchStrategy[Comparison]:
 
 
 def conditions(*, numbers: bool = False) -> st.SearchStrategy[Condition]:
-    atoms = ATOMS[:2] if numbers else ATOMS
-    leaves: st.SearchStrategy[Condition] = st.sampled_from(atoms).map(percept) | st.booleans().map(Constant)
+    """Mostly atoms, seldom constants."""
+    atoms: list[Condition] = [percept(text) for text in (ATOMS[:2] if numbers else ATOMS)]
+    leaves: st.SearchStrategy[Condition] = st.sampled_from([*atoms, *atoms, *atoms, Constant(True), Constant(False)])
     if numbers:
-        leaves = leaves | comparisons()
+        leaves = comparisons() | leaves
     return st.recursive(
         leaves,
         lambda inner: st.one_of(
@@ -74,10 +75,11 @@ def conditions(*, numbers: bool = False) -> st.SearchStrategy[Condition]:
             st.lists(inner, min_size=1, max_size=3).map(lambda parts: AllOf(tuple(parts))),
             st.lists(inner, min_size=1, max_size=3).map(lambda parts: AnyOf(tuple(parts))),
         ),
-        max_leaves=4,
+        max_leaves=3,
     )
 
 
+<<<<<<< HEAD
 def goals(*, alternatives: bool = True, numbers: bool = False, max_leaves: int = 12) -> st.SearchStrategy[Goal]:
     leaves = st.one_of(
         st.builds(do, st.sampled_from(OUTPUTS), st.sampled_from(VALUES)),
@@ -85,20 +87,35 @@ def goals(*, alternatives: bool = True, numbers: bool = False, max_leaves: int =
         st.just(Anything("(goalem)", NOWHERE)),
         st.just(Impossible(NOWHERE)),
     )
+=======
+@st.composite
+def goals(draw: st.DrawFn, *, alternatives: bool = True, numbers: bool = False, max_leaves: int = 12) -> Goal:
+    """Goals that often conflict: a few outputs of two values, every kind of joint."""
+    kinds: list[type[Goal]] = [If, If, And, And, PrioAnd, PrioAnd, *([Or] if alternatives else [])]
+>>>>>>> main
 
-    def extend(inner: st.SearchStrategy[Goal]) -> st.SearchStrategy[Goal]:
-        several = st.lists(inner, min_size=1, max_size=4).map(tuple)
-        nodes: list[st.SearchStrategy[Goal]] = [
-            st.builds(lambda c, a, b: If(c, a, b, "(goalem)", NOWHERE), conditions(numbers=numbers), inner, inner),
-            several.map(lambda parts: And(parts, NOWHERE)),
-            several.map(lambda parts: PrioAnd(parts, NOWHERE)),
-            several.map(lambda parts: PrioAnd(parts, NOWHERE)),
-        ]
-        if alternatives:
-            nodes.append(several.map(lambda parts: Or(parts, NOWHERE)))
-        return st.one_of(nodes)
+    def grow(leaves: int) -> Goal:
+        if leaves == 1:
+            if draw(st.integers(0, 7)) == 7:
+                return Anything("(goalem)", NOWHERE)
+            return do(draw(st.sampled_from(("x", *OUTPUTS))), draw(st.sampled_from(VALUES)))
+        kind = draw(st.sampled_from(kinds))
+        if kind is If:
+            first = draw(st.integers(1, leaves - 1))
+            return If(draw(conditions(numbers=numbers)), grow(first), grow(leaves - first), "(goalem)", NOWHERE)
+        parts = []
+        while leaves:
+            parts.append(grow(draw(st.integers(1, max(1, leaves - (not parts))))))
+            leaves -= size(parts[-1])
+        assert kind in (And, Or, PrioAnd)
+        return kind(tuple(parts), NOWHERE)
 
-    return st.recursive(leaves, extend, max_leaves=max_leaves)
+    return grow(draw(st.integers(max_leaves // 2, max_leaves)))
+
+
+def size(goal: Goal) -> int:
+    """How many leaves a goal has."""
+    return sum(isinstance(node, Do | Anything) for node in walk(goal))
 
 
 def whole(top: Goal) -> Goals:

@@ -44,7 +44,7 @@ def true_percepts(values: Values) -> int:
 
 @pytest.mark.rule("L26")
 @settings(max_examples=120, deadline=None, derandomize=True)
-@given(goals(numbers=True, max_leaves=7))
+@given(goals(max_leaves=8) | goals(numbers=True, max_leaves=7))
 def test_a_hole_is_found_where_there_is_one_with_a_witness_of_fewest_true_percepts(goal: Goal) -> None:
     plan = compiled(f"(goalem {as_text(goal, lambda: False, [])})", allow_holes=True)
     holes = [values for values in situations(goal, EVERY_ORDER) if taken(goal, situation(goal, values)) is None]

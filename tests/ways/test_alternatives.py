@@ -10,17 +10,18 @@ from properties.texts import compiled, findings, said
 from rplan.circuit.build import build
 from rplan.circuit.passes import run
 from rplan.circuit.stats import stats
-from rplan.driver import NO_LIBRARIES, load
+from rplan.driver import NO_LIBRARIES
 from rplan.goals.expand import expand
 from rplan.lang.depth import deep_recursion
 from rplan.lang.diagnostic import PlanError
+from rplan.lang.parse import parse_text
 from rplan.lang.source import Source
 from rplan.ways.reduce import reduce
 
 
 def gates(text: str) -> int:
     with deep_recursion():
-        goals, _ = expand(load(Source("test.rplan", text))[0], NO_LIBRARIES)
+        goals, _ = expand(parse_text(Source("test.rplan", text))[0], NO_LIBRARIES)
         return stats(run(build(reduce(goals)))).gates
 
 
@@ -78,7 +79,7 @@ def test_alternatives_share_an_output_also_through_others() -> None:
 
 
 def refused(text: str, limit: int) -> bool:
-    goals, _ = expand(load(Source("test.rplan", text))[0], NO_LIBRARIES)
+    goals, _ = expand(parse_text(Source("test.rplan", text))[0], NO_LIBRARIES)
     try:
         reduce(goals, limit=limit)
     except PlanError as error:
@@ -107,3 +108,12 @@ def test_a_choice_that_one_branch_has_more_is_open_only_there() -> None:
         if plan.ways.guards.evaluate([c, d, e])[plan.ways.hole]
     ]
     assert holes == [(False, False, True), (False, True, True), (True, True, False), (True, True, True)]
+
+
+@pytest.mark.rule("L18")
+def test_a_choice_that_only_the_first_branch_has_does_not_hide_a_hole_of_the_other() -> None:
+    branches = "(if (c) (or (do x one) (do x two) (do x three)) (or (do x four) (do x five)))"
+    text = f"(goalem (and {branches} (when (d) (do x three))))"
+    plan = compiled(text, allow_holes=True)
+    holes = [(c, d) for c in (False, True) for d in (False, True) if plan.ways.guards.evaluate([c, d])[plan.ways.hole]]
+    assert holes == [(False, True)]

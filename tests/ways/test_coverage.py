@@ -53,6 +53,8 @@ def test_a_hole_in_a_situation_that_numbers_rule_out_is_none() -> None:
 def test_a_witness_has_the_fewest_true_percepts_then_the_first_ones_false() -> None:
     found = hole("(goalem (and (do x a) (when (or (and (p) (q) (r)) (and (s) (t)) (and (t) (u))) (do x b))))")
     assert found.when == "not (p) and not (q) and not (r) and not (s) and (t) and (u)"
+    fewer = hole("(goalem (and (do x a) (when (or (p) (and (q) (r))) (do x b))))")
+    assert fewer.when == "(p) and not (q) and not (r)"
 
 
 @pytest.mark.rule("L26")

@@ -87,7 +87,7 @@ def _check_targets(*targets: Path | None) -> None:
         if target is not None and not target.resolve().parent.is_dir():
             raise InputError(f"there is no folder {target.parent} to write {target.name} into")
     if targets[-1] is not None and find_spec("matplotlib") is None:
-        raise InputError("--plot needs matplotlib: pip install 'rplan[plot]'")
+        raise InputError("--plot needs matplotlib: pip install matplotlib")
 
 
 @contextmanager
@@ -222,8 +222,8 @@ def _switch_table(run: Run) -> Table:
     table = Table(box=None, title="\nSwitches, and why", title_justify="left", title_style="bold")
     table.add_column("at", justify="right", no_wrap=True)
     table.add_column("channel")
-    table.add_column("to")
-    table.add_column("because")
+    table.add_column("to", overflow="fold")
+    table.add_column("because", overflow="fold")
     for switch in run.switches:
         table.add_row(f"{switch.time:.1f} s", switch.channel, switch.after, switch.because)
     return table

@@ -102,4 +102,4 @@ def _literal(branch: Branch) -> str:
 
 
 def _acts(way: TakenWay) -> str:
-    return " ".join(f"{act.output}={act.value}" for act in way.acts) or "(sets nothing)"
+    return " ".join(dict.fromkeys(f"{act.output}={act.value}" for act in way.acts)) or "(sets nothing)"

@@ -386,7 +386,7 @@ def draw(recording: Recording, path_png: Path | str, verdict: str = "") -> None:
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
     except ImportError as fault:
-        raise ImportError("drawing needs matplotlib: pip install 'rplan[plot]'", name="matplotlib") from fault
+        raise ImportError("drawing needs matplotlib: pip install matplotlib", name="matplotlib") from fault
     track = _track(recording)
     if not track.t:
         raise ValueError("the recording has no ticks: there is nothing to draw")
