@@ -6,12 +6,8 @@ is to be said of it; `PlanError` with everything that is wrong. Leaves alone: ro
 
 from __future__ import annotations
 
-<<<<<<< HEAD
-from collections.abc import Callable, Iterable, Mapping
-=======
 import re
-from collections.abc import Mapping
->>>>>>> main
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import NamedTuple
@@ -24,12 +20,8 @@ from rplan.goals.goal import Goals
 from rplan.goals.signature import Libraries
 from rplan.lang.depth import deep_recursion
 from rplan.lang.diagnostic import Diagnostic, PlanError
-<<<<<<< HEAD
 from rplan.lang.include import OpenFile, gather, no_files
 from rplan.lang.parse import parse_gathered
-=======
-from rplan.lang.parse import parse_with_errors
->>>>>>> main
 from rplan.lang.plan import Plan
 from rplan.lang.reader import capped
 from rplan.lang.source import Source, Span
@@ -63,14 +55,13 @@ class Compiled:
         return texts_of(self.sources or (self.source,))
 
 
-<<<<<<< HEAD
 def texts_of(sources: Iterable[Source]) -> Mapping[str, str]:
     """File name -> text."""
     return {source.name: source.text for source in sources}
 
 
 class Loaded(NamedTuple):
-    """A well-formed plan, what is to be said of it, and the texts that it comes from, its own first."""
+    """A plan, what is to be said of it, and the texts that it comes from, its own first."""
 
     plan: Plan
     diagnostics: tuple[Diagnostic, ...]
@@ -78,9 +69,10 @@ class Loaded(NamedTuple):
 
 
 def load(source: Source, open_file: OpenFile = no_files) -> Loaded:
-    """Text → Plan: well formed, names not looked up, with the definitions of the files that it includes.
+    """Text → Plan, names not looked up, with the definitions of the files that it includes.
 
-    open_file: path → source, for `include`; paths are relative to where the plan's own name is.
+    open_file: path → source, for `include`; paths are relative to where the plan's own name is. Where there are errors
+    among the diagnostics, the plan has placeholders. Raises PlanError where nothing could be read.
     """
     gathered = gather(source, open_file)
     try:
@@ -95,8 +87,6 @@ def no_checks(ways: Ways) -> tuple[Diagnostic, ...]:  # noqa: ARG001
     return ()
 
 
-=======
->>>>>>> main
 def compile_plan(
     source: Source,
     libraries: Libraries = NO_LIBRARIES,
@@ -112,36 +102,29 @@ def compile_plan(
     is wrong; what was only noticed is in `Compiled.diagnostics`.
     """
     with deep_recursion():
-<<<<<<< HEAD
-        loaded = load(source, open_file)
-        found = list(loaded.diagnostics)
-=======
-        plan, said = parse_with_errors(source)
+        plan, said, sources = load(source, open_file)
+        texts = texts_of(sources)
         found = list(said)
         broken = any(diagnostic.severity == "error" for diagnostic in said)
->>>>>>> main
         try:
-            goals, noticed = expand(loaded.plan, libraries, strict=strict)
+            goals, noticed = expand(plan, libraries, strict=strict)
             found += noticed
             ways = reduce(goals) if not broken else None
         except PlanError as error:
-<<<<<<< HEAD
-            raise PlanError([*found, *error.diagnostics], texts_of(loaded.sources)) from None
+            more = [d for d in error.diagnostics if not broken or _stands_alone(d, said, sources)]
+            every = [*found, *more]
+            raise PlanError(capped(_in_order(every, sources)) if broken else every, texts) from None
+        if ways is None:
+            raise PlanError(capped(said), texts)
         found += [*find(ways, allow_holes=allow_holes), *checks(ways)]
         if any(diagnostic.severity == "error" for diagnostic in found):
-            raise PlanError(found, texts_of(loaded.sources))
-        circuit = passes.run(build(ways))
-        return Compiled(source, loaded.plan, goals, ways, circuit, tuple(found), loaded.sources)
-=======
-            more = [d for d in error.diagnostics if not broken or _stands_alone(d, said, source)]
-            every = [*found, *more]
-            raise PlanError(capped(sorted(every, key=lambda d: d.span)) if broken else every) from None
-        if ways is None:
-            raise PlanError(capped(said))
-        found += find(ways, allow_holes=allow_holes)
-        if any(diagnostic.severity == "error" for diagnostic in found):
-            raise PlanError(found)
-        return Compiled(source, plan, goals, ways, passes.run(build(ways)), tuple(found))
+            raise PlanError(found, texts)
+        return Compiled(source, plan, goals, ways, passes.run(build(ways)), tuple(found), sources)
+
+
+def _in_order(found: Iterable[Diagnostic], sources: Sequence[Source]) -> list[Diagnostic]:
+    order = {source.name: number for number, source in enumerate(sources)}
+    return sorted(found, key=lambda one: (order.get(one.span.file, 0), one.span))
 
 
 LOCAL = (
@@ -151,18 +134,20 @@ LOCAL = (
 """What is wrong with names and types whatever else is wrong with the text."""
 
 
-def _stands_alone(found: Diagnostic, before: tuple[Diagnostic, ...], source: Source) -> bool:
+def _stands_alone(found: Diagnostic, before: tuple[Diagnostic, ...], sources: Sequence[Source]) -> bool:
     """Whether a finding in a plan with placeholders would be there without them: one mistake is told once."""
     if found.code not in LOCAL or "``" in found.message:
         return False
     if found.code == "no-rule" and any(one.code.endswith("-parenthesis") for one in before):
         head = found.message.partition("`(")[2].partition(")")[0]
-        if re.search(rf"\(\s*defgoalr\s+\(\s*{re.escape(head)}[\s)]", source.text):
+        rule = rf"\(\s*defgoalr\s+\(\s*{re.escape(head)}[\s)]"
+        if any(re.search(rule, source.text) for source in sources):
             return False
     return not any(_contains(found.span, one.span) for one in before if one.severity == "error")
 
 
 def _contains(outer: Span, inner: Span) -> bool:
+    if outer.file != inner.file:
+        return False
     begins = (outer.line, outer.column) <= (inner.line, inner.column)
     return begins and (inner.end_line, inner.end_column) <= (outer.end_line, outer.end_column)
->>>>>>> main
