@@ -178,7 +178,7 @@ class _Writer:
 
     def __init__(self, circuit: Circuit, ends: Sequence[int]) -> None:
         self.circuit = circuit
-        self.loads: list[tuple[str, str, str]] = []
+        self.loads: dict[tuple[str, str, str], None] = {}
         self.lines: list[str] = []
         self.expressions: dict[int, tuple[str, int, int]] = {}
         self.readers: dict[int, int] = {}
@@ -221,8 +221,7 @@ class _Writer:
                 return str(bool(cell.index)), _ATOM, 0
             case Op.INPUT | Op.REGISTER:
                 load = _variable(self.circuit, cell.op, cell.index)
-                if load not in self.loads:
-                    self.loads.append(load)
+                self.loads[load] = None
                 return load[0], _ATOM, 0
             case Op.NOT:
                 return f"not {self.text(cell.operands[0], _NOT)}", _NOT, size

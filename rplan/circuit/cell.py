@@ -19,6 +19,9 @@ class Op(Enum):
     AND = "and"
     OR = "or"
 
+    __hash__ = object.__hash__
+    """By identity, as they compare; circuits look operations up by the hundred thousand."""
+
     @property
     def arity(self) -> int:
         """How many nets it reads."""

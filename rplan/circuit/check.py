@@ -13,13 +13,15 @@ from rplan.lang.diagnostic import InternalError
 
 def check(circuit: Circuit) -> None:
     """Raise `InternalError` unless every rule of `Circuit` holds."""
+    arities = {op: op.arity for op in Op}
+    limits = {Op.INPUT: len(circuit.inputs), Op.REGISTER: len(circuit.registers), Op.CONSTANT: 2}
     for net, cell in enumerate(circuit.cells):
-        if len(cell.operands) != cell.op.arity:
-            raise InternalError(f"net {net}: {cell.op.value} reads {len(cell.operands)} nets")
-        if any(not 0 <= operand < net for operand in cell.operands):
-            raise InternalError(f"net {net} reads a net that is not smaller: {cell.operands}")
-        limit = {Op.INPUT: len(circuit.inputs), Op.REGISTER: len(circuit.registers), Op.CONSTANT: 2}.get(cell.op)
-        if limit is not None and not 0 <= cell.index < limit:
+        operands = cell.operands
+        if len(operands) != arities[cell.op]:
+            raise InternalError(f"net {net}: {cell.op.value} reads {len(operands)} nets")
+        if operands and not 0 <= min(operands) <= max(operands) < net:
+            raise InternalError(f"net {net} reads a net that is not smaller: {operands}")
+        if not operands and not 0 <= cell.index < limits[cell.op]:
             raise InternalError(f"net {net}: there is no {cell.op.value} {cell.index}")
     nets = [register.next for register in circuit.registers] + [net for _, net in circuit.outputs]
     for net in nets:

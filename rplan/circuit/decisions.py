@@ -22,8 +22,8 @@ MOST_NODES = 4096
 MOST_GATES = 4096
 MOST_VARIABLES = 400
 """Both are limits for trying at all; recursion goes as deep as there are variables."""
-MOST_STEPS = 1 << 14
-"""Conjunctions while building diagrams; that takes less than 0.05 s."""
+MOST_DIAGRAM = 1 << 14
+"""Nodes of all diagrams of one order; to come to them takes less than 0.1 s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,10 +92,13 @@ class _Diagrams:
         if low == high:
             return low
         key = level, low, high
-        if key not in self.index:
-            self.index[key] = len(self.nodes)
+        found = self.index.get(key)
+        if found is None:
+            if len(self.nodes) >= MOST_DIAGRAM:
+                raise _TooLargeError
+            found = self.index[key] = len(self.nodes)
             self.nodes.append(key)
-        return self.index[key]
+        return found
 
     def negation(self, a: int) -> int:
         if a not in self.negations:
@@ -113,8 +116,6 @@ class _Diagrams:
             return b
         found = self.conjunctions.get((a, b))
         if found is None:
-            if len(self.conjunctions) == MOST_STEPS:
-                raise _TooLargeError
             level = min(self.nodes[a][0], self.nodes[b][0])
             (a0, a1), (b0, b1) = self.branches(a, level), self.branches(b, level)
             found = self.conjunctions[a, b] = self.node(level, self.both(a0, b0), self.both(a1, b1))

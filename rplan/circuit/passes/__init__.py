@@ -16,17 +16,19 @@ from rplan.circuit.passes.sweep import sweep
 Pass = Callable[[Circuit], Circuit]
 
 PIPELINE: tuple[Pass, ...] = (
-    share,  # equal gates become one, constants disappear: cheap, so that the next has less to try out
-    merge,  # nets that say the same in every situation become one: leaves constants and negations to be shared
-    share,  # folds what merging has left
+    sweep,  # first: building leaves much that nobody reads
+    share,  # equal gates become one, constants disappear: leaves nets that nobody reads
+    merge,  # what equals something else in every situation becomes that: dear, so the others go before
     sweep,  # last: takes away what nobody reads
 )
 
 
 def run(circuit: Circuit) -> Circuit:
-    """The circuit after all passes, checked after each."""
+    """The circuit after all passes, checked after each that changes it."""
     check(circuit)
     for one in PIPELINE:
-        circuit = one(circuit)
-        check(circuit)
+        after = one(circuit)
+        if after is not circuit:
+            check(after)
+        circuit = after
     return circuit

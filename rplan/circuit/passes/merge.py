@@ -1,7 +1,7 @@
 """Nets that are equal, or opposite, in every situation become one; nets that never change become constants.
 
-Takes: a circuit. Gives: one that computes the same outputs and next registers. Leaves alone: circuits that read more
-than 20 inputs and registers together or are too large to try out, and nets that nobody reads any more.
+Takes: a circuit. Gives: one that computes the same outputs and next registers, shared anew. Leaves alone: circuits
+that read more than 20 inputs and registers together or are too large to try out, and nets that nobody reads any more.
 
 Every assignment of inputs and registers is tried, as many at a time as a word of `CHUNK` bits holds, and the nets are
 parted into classes by what they say; so what is merged is proved equal, not guessed. Registers count as free: what
@@ -15,6 +15,7 @@ from dataclasses import replace
 
 from rplan.circuit.cell import Cell, Op
 from rplan.circuit.circuit import Circuit
+from rplan.circuit.passes.share import share
 
 MOST_VARIABLES = 20
 MOST_BITS = 1 << 32
@@ -47,12 +48,13 @@ def merge(circuit: Circuit) -> Circuit:
         else:
             cells.append(Cell(Op.NOT, (now[known],)))
         now.append(len(cells) - 1)
-    return replace(
+    merged = replace(
         circuit,
         cells=tuple(cells),
         registers=tuple(replace(register, next=now[register.next]) for register in circuit.registers),
         outputs=tuple((port, now[net]) for port, net in circuit.outputs),
     )
+    return share(merged)
 
 
 def variables(circuit: Circuit) -> list[Variable]:

@@ -17,16 +17,18 @@ class _Table:
 
     def __init__(self) -> None:
         self.cells: list[Cell] = []
-        self.index: dict[Cell, int] = {}
+        self.index: dict[tuple[Op, tuple[int, ...], int], int] = {}
 
-    def put(self, cell: Cell) -> int:
-        if cell not in self.index:
-            self.index[cell] = len(self.cells)
-            self.cells.append(cell)
-        return self.index[cell]
+    def put(self, op: Op, operands: tuple[int, ...], index: int = 0) -> int:
+        key = op, operands, index
+        net = self.index.get(key)
+        if net is None:
+            net = self.index[key] = len(self.cells)
+            self.cells.append(Cell(op, operands, index))
+        return net
 
     def constant(self, value: bool) -> int:
-        return self.put(Cell(Op.CONSTANT, (), int(value)))
+        return self.put(Op.CONSTANT, (), int(value))
 
     def negation(self, a: int) -> int:
         cell = self.cells[a]
@@ -36,7 +38,7 @@ class _Table:
             case Op.NOT:
                 return cell.operands[0]
             case _:
-                return self.put(Cell(Op.NOT, (a,)))
+                return self.put(Op.NOT, (a,))
 
     def junction(self, op: Op, a: int, b: int) -> int:
         """`and` or `or`: an operand equal to `absorbing` decides, one that is its opposite drops out."""
@@ -45,9 +47,9 @@ class _Table:
             cell = self.cells[x]
             if cell.op is Op.CONSTANT:
                 return x if bool(cell.index) == absorbing else y
-            if cell == Cell(Op.NOT, (y,)):
+            if cell.op is Op.NOT and cell.operands[0] == y:
                 return self.constant(absorbing)
-        return a if a == b else self.put(Cell(op, (min(a, b), max(a, b))))
+        return a if a == b else self.put(op, (a, b) if a < b else (b, a))
 
 
 def share(circuit: Circuit) -> Circuit:
@@ -55,14 +57,13 @@ def share(circuit: Circuit) -> Circuit:
     table = _Table()
     now: list[int] = []
     for cell in circuit.cells:
-        operands = tuple(now[operand] for operand in cell.operands)
         match cell.op:
-            case Op.NOT:
-                now.append(table.negation(operands[0]))
             case Op.AND | Op.OR:
-                now.append(table.junction(cell.op, *operands))
+                now.append(table.junction(cell.op, now[cell.operands[0]], now[cell.operands[1]]))
+            case Op.NOT:
+                now.append(table.negation(now[cell.operands[0]]))
             case Op.CONSTANT | Op.INPUT | Op.REGISTER:
-                now.append(table.put(cell))
+                now.append(table.put(cell.op, (), cell.index))
     return replace(
         circuit,
         cells=tuple(table.cells),

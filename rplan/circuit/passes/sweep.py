@@ -9,17 +9,23 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from rplan.circuit.cell import Cell
 from rplan.circuit.circuit import Circuit
 
 
 def sweep(circuit: Circuit) -> Circuit:
     """The circuit without dead cells."""
     live = _live(circuit)
+    if all(live):
+        return circuit
     nets = {old: new for new, old in enumerate(net for net in range(len(circuit.cells)) if live[net])}
     cells = (circuit.cells[old] for old in nets)
     return replace(
         circuit,
-        cells=tuple(replace(cell, operands=tuple(nets[operand] for operand in cell.operands)) for cell in cells),
+        cells=tuple(
+            Cell(cell.op, tuple([nets[operand] for operand in cell.operands])) if cell.operands else cell
+            for cell in cells
+        ),
         registers=tuple(replace(register, next=nets[register.next]) for register in circuit.registers),
         outputs=tuple((port, nets[net]) for port, net in circuit.outputs),
     )
