@@ -79,25 +79,18 @@ def conditions(*, numbers: bool = False) -> st.SearchStrategy[Condition]:
     )
 
 
-<<<<<<< HEAD
-def goals(*, alternatives: bool = True, numbers: bool = False, max_leaves: int = 12) -> st.SearchStrategy[Goal]:
-    leaves = st.one_of(
-        st.builds(do, st.sampled_from(OUTPUTS), st.sampled_from(VALUES)),
-        st.builds(do, st.sampled_from(OUTPUTS), st.sampled_from(VALUES)),
-        st.just(Anything("(goalem)", NOWHERE)),
-        st.just(Impossible(NOWHERE)),
-    )
-=======
 @st.composite
 def goals(draw: st.DrawFn, *, alternatives: bool = True, numbers: bool = False, max_leaves: int = 12) -> Goal:
     """Goals that often conflict: a few outputs of two values, every kind of joint."""
     kinds: list[type[Goal]] = [If, If, And, And, PrioAnd, PrioAnd, *([Or] if alternatives else [])]
->>>>>>> main
 
     def grow(leaves: int) -> Goal:
         if leaves == 1:
-            if draw(st.integers(0, 7)) == 7:
+            chance = draw(st.integers(0, 15))
+            if chance >= 14:
                 return Anything("(goalem)", NOWHERE)
+            if chance == 13:
+                return Impossible(NOWHERE)
             return do(draw(st.sampled_from(("x", *OUTPUTS))), draw(st.sampled_from(VALUES)))
         kind = draw(st.sampled_from(kinds))
         if kind is If:
@@ -115,7 +108,7 @@ def goals(draw: st.DrawFn, *, alternatives: bool = True, numbers: bool = False, 
 
 def size(goal: Goal) -> int:
     """How many leaves a goal has."""
-    return sum(isinstance(node, Do | Anything) for node in walk(goal))
+    return sum(isinstance(node, Do | Anything | Impossible) for node in walk(goal))
 
 
 def whole(top: Goal) -> Goals:
