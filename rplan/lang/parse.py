@@ -477,10 +477,18 @@ class _Parser:
                     return "", ()
                 return name, arguments
             case (name_form, *arguments):
-                return self._name(name_form, "a goal"), arguments
+                return self._goal_name(name_form), arguments
             case _:
                 self._count(kind, form, rest, 1)
                 return "", ()
+
+    def _goal_name(self, form: Form) -> str:
+        """A goal without arguments may be called as a form of the language; `(ach and x)` is a slip."""
+        if isinstance(form, Symbol) and form.name in CONDITION_FORMS:
+            hint = f"a condition stands in parentheses: `(ach ({form.name} …))`"
+            self.error("reserved-name", f"`{form.name}` makes a condition and cannot name a goal", form.span, hint)
+            return ""
+        return self._name(form, "a goal")
 
     def operator(self, form: ListForm) -> Operator:
         rest, options = self._split(form.items[1:], ("do", "pre", "add", "del"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import cycle
 
 import pytest
 from hypothesis import given, settings
@@ -33,13 +34,11 @@ GAPS = (
 @st.composite
 def untidy_texts(draw: st.DrawFn) -> str:
     """A plan whose words are set apart by anything that may stand between them."""
-    words = words_of(draw(plan_texts()))
-    text = draw(st.sampled_from(GAPS))
-    for word in words:
-        gap = draw(st.sampled_from(GAPS))
-        glued = word in "()" or text.endswith("(")
-        text += word + (gap if gap or glued else " ")
-        text += "" if text[-1].isspace() or text[-1] in "()" else " "
+    gaps = cycle(draw(st.lists(st.sampled_from(GAPS), min_size=1, max_size=12)))
+    text = next(gaps)
+    for word in words_of(draw(plan_texts())):
+        glued = not text or text[-1].isspace() or text[-1] in "()" or word in "()"
+        text += ("" if glued else " ") + word + next(gaps)
     return text
 
 

@@ -12,33 +12,45 @@ from typing import Any
 from hypothesis import strategies as st
 
 from rplan.lang.plan import (
+    Achieve,
     AllOf,
     And,
     AnyOf,
     Anything,
+    Argument,
+    Arithmetic,
+    Assumption,
     Call,
     Compare,
     Condition,
     Declaration,
     Do,
+    Expected,
     Expression,
+    Given,
     Goal,
     Header,
     If,
     NamedCondition,
     Not,
     Number,
+    Operator,
     Or,
     OutputDeclaration,
+    OutputIs,
     Plan,
+    PlanTest,
     PrioAnd,
+    Property,
     Rule,
     Setting,
+    Step,
     Subgoal,
     TopGoal,
     Truth,
     Type,
     Use,
+    Variable,
 )
 from rplan.lang.printer import print_plan
 from rplan.lang.source import NOWHERE
@@ -110,8 +122,24 @@ def conditions(max_leaves: int = 5) -> st.SearchStrategy[Condition]:
     return st.recursive(st.one_of(calls(PERCEPTS), truths(), _compares()), deeper, max_leaves=max_leaves)
 
 
-def subgoals() -> st.SearchStrategy[Subgoal]:
-    return st.builds(Subgoal, st.sampled_from(("ach", "maint")), st.sampled_from(GOALS), _nowhere)
+def _arguments() -> st.SearchStrategy[tuple[Argument, ...]]:
+    one: st.SearchStrategy[Argument] = st.one_of(values(), conditions(2), arithmetic())
+    return st.one_of(st.just(()), st.lists(one, max_size=2).map(tuple))
+
+
+def arithmetic() -> st.SearchStrategy[Arithmetic]:
+    operands = st.lists(st.one_of(numbers(), calls(PERCEPTS)), min_size=1, max_size=2).map(tuple)
+    return st.builds(Arithmetic, st.sampled_from(("+", "-", "*", "min", "max")), operands, _nowhere)
+
+
+def subgoals() -> st.SearchStrategy[Subgoal | Achieve]:
+    kinds, names = st.sampled_from(("ach", "maint")), st.sampled_from(GOALS)
+    asked = st.builds(Achieve, st.builds(Not, calls(PERCEPTS), _nowhere), _nowhere, st.one_of(st.none(), _few))
+    deep = st.builds(Subgoal, st.just("ach"), names, _arguments(), _nowhere, _few)
+    return st.one_of(st.builds(Subgoal, kinds, names, _arguments(), _nowhere), deep, asked)
+
+
+_few = st.integers(1, 9)
 
 
 def goals(max_leaves: int = 6) -> st.SearchStrategy[Goal]:
@@ -147,18 +175,62 @@ def _outputs() -> st.SearchStrategy[OutputDeclaration]:
     return st.one_of(
         st.builds(OutputDeclaration, name, types(), maybe, st.just(False), none, _nowhere),
         st.builds(OutputDeclaration, name, types(), none, st.just(True), maybe, _nowhere),
+        st.builds(OutputDeclaration, name, types(), none, st.just(False), none, _nowhere, st.just(True)),
     )
 
 
 def rules() -> st.SearchStrategy[Rule]:
     kind = st.sampled_from(("ach", "maint"))
-    return st.builds(Rule, kind, st.sampled_from(GOALS), _docs, goals(), _nowhere, _nowhere)
+    return st.one_of(
+        st.builds(Rule, kind, st.sampled_from(GOALS), _arguments(), _docs, goals(), _nowhere, _nowhere),
+        st.builds(Rule, kind, st.sampled_from(GOALS), st.just((X,)), _docs, st.just(OF_X), _nowhere, _nowhere),
+    )
+
+
+X = Variable("x", NOWHERE)
+OF_X = If(
+    AllOf((X, Call("near", (X,), NOWHERE), Compare("<", X, Number(2.0, "m", NOWHERE), NOWHERE)), NOWHERE),
+    Do("goal", X, NOWHERE),
+    Subgoal("ach", "search", (X, Call("a", (X,), NOWHERE)), NOWHERE),
+    NOWHERE,
+)
+
+
+def _operators() -> st.SearchStrategy[Operator]:
+    facts = st.lists(calls(PERCEPTS), max_size=2).map(tuple)
+    moves = st.just(Call("go-on", (X,), NOWHERE))
+    return st.builds(
+        Operator, st.sampled_from(VALUES), st.just(("x",)), _docs, st.sampled_from(OUTPUTS), moves, conditions(2),
+        facts, facts, _nowhere, _nowhere,
+    )  # fmt: skip
+
+
+def _properties() -> st.SearchStrategy[Property]:
+    asked = st.builds(OutputIs, st.sampled_from(OUTPUTS), st.one_of(st.none(), values()), _nowhere)
+    claims = st.one_of(conditions(2), asked, st.builds(Not, asked, _nowhere))
+    return st.builds(Property, st.sampled_from(VALUES), _docs, claims, st.one_of(st.none(), claims), _nowhere)
+
+
+def _tests() -> st.SearchStrategy[PlanTest]:
+    given = st.builds(Given, calls(PERCEPTS), st.one_of(numbers(), truths()), _nowhere)
+    value = st.one_of(st.none(), values())
+    expected = st.builds(Expected, st.sampled_from(OUTPUTS), value, _nowhere)
+    step = st.builds(
+        Step, _few, st.lists(given, max_size=2).map(tuple), st.lists(expected, max_size=2).map(tuple), st.booleans(),
+        _nowhere,
+    )  # fmt: skip
+    steps = st.lists(step, min_size=1, max_size=2).map(tuple)
+    return st.builds(PlanTest, st.sampled_from(VALUES), _docs, steps, _nowhere)
 
 
 def plans() -> st.SearchStrategy[Plan]:
     """Whole plans with every span NOWHERE; `parse` takes their printed text."""
     period = st.floats(0.001, 10.0)
-    named = st.builds(NamedCondition, st.sampled_from(PERCEPTS), _docs, conditions(), _nowhere)
+    general = AllOf((X, Not(Call("bumped", (X,), NOWHERE), NOWHERE)), NOWHERE)
+    named = st.one_of(
+        st.builds(NamedCondition, st.sampled_from(PERCEPTS), st.just(()), _docs, conditions(), _nowhere),
+        st.builds(NamedCondition, st.sampled_from(PERCEPTS), st.just(("x",)), _docs, st.just(general), _nowhere),
+    )
     return st.builds(
         Plan,
         st.builds(Header, st.sampled_from(("patrol", "fetch")), _docs, period, _nowhere),
@@ -169,6 +241,10 @@ def plans() -> st.SearchStrategy[Plan]:
         st.lists(rules(), max_size=3).map(tuple),
         st.one_of(st.none(), st.builds(TopGoal, goals(), _nowhere)),
         _nowhere,
+        st.lists(_operators(), max_size=1).map(tuple),
+        st.lists(_properties(), max_size=1).map(tuple),
+        st.lists(st.builds(Assumption, conditions(2), _nowhere), max_size=1).map(tuple),
+        st.lists(_tests(), max_size=1).map(tuple),
     )
 
 
