@@ -18,6 +18,7 @@ import rplan
 from rplan.apps.wiring import PlanBrain, compile_source
 from rplan.lang.diagnostic import Diagnostic, PlanError, render
 from rplan.lang.source import Source
+from rplan.ways.coverage import review
 
 HERE = Path(__file__).parent
 GOLDEN = sorted(HERE.glob("*.txt"))
@@ -31,7 +32,9 @@ NOT_BY_TEXT = ("not-decided",)
 def findings(source: Source) -> tuple[Diagnostic, ...]:
     command = source.text.partition("\n")[0].split()
     try:
-        compiled = compile_source(source, strict="--strict" in command, allow_holes="--allow-holes" in command)
+        compiled = compile_source(
+            source, strict="--strict" in command, allow_holes="--allow-holes" in command, checks=review
+        )
         if "simulate" in command:
             PlanBrain(compiled)
         return compiled.diagnostics
@@ -60,7 +63,7 @@ def codes_of(path: Path) -> Iterator[str]:
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Call):
             called = ast.unparse(node.func).split(".")[-1]
-            position = {"Diagnostic": 0, "error": 0, "_unexpected": 2, "add": 1}.get(called, len(node.args))
+            position = {"Diagnostic": 0, "error": 0, "shown": 2, "_unexpected": 2, "add": 1}.get(called, len(node.args))
             for code in ast.walk(node.args[position]) if position < len(node.args) else ():
                 if isinstance(code, ast.Constant) and isinstance(code.value, str):
                     yield code.value
@@ -68,7 +71,7 @@ def codes_of(path: Path) -> Iterator[str]:
 
 def test_every_code_has_a_golden_file_and_shows_in_it() -> None:
     here = Path(rplan.__path__[0])
-    stages = [*here.glob("lang/*.py"), *here.glob("goals/*.py"), *here.glob("ways/*.py"), here / "apps/wiring.py"]
+    stages = [*here.glob("lang/*.py"), *here.glob("goals/*.py"), *here.glob("ways/**/*.py"), here / "apps/wiring.py"]
     codes = sorted({code for path in stages for code in codes_of(path)} - {*NOT_BY_TEXT})
     assert len(codes) > 40
     files = {path.stem: path.read_text(encoding="utf-8") for path in GOLDEN}

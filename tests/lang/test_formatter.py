@@ -27,7 +27,7 @@ GAPS = (
     " ; said\n",
     "\n;; on its own  \n\n",
     " #| in between |# ",
-    "#| two\n  lines |#\n",
+    " #| two\n  lines |#\n",
 )
 
 
