@@ -125,7 +125,7 @@ def test_a_condition_of_itself_is_a_circle_also_where_nothing_uses_it() -> None:
     assert found.message.endswith("a → a")
 
 
-def test_a_named_condition_takes_no_arguments() -> None:
+def test_a_named_condition_takes_as_many_arguments_as_its_head_has() -> None:
     assert [d.code for d in errors("(defcond (a) (p)) (goalem (when (a home) (do x one)))")] == ["wrong-arity"]
 
 

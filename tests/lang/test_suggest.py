@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from rplan.lang.suggest import close
+from rplan.lang.suggest import Names, close
 
 
 @pytest.mark.rule("L6")
@@ -46,3 +48,9 @@ def test_a_name_that_exists_is_not_close_to_another() -> None:
 def test_the_first_of_several_is_given() -> None:
     assert close("boxes", ["boxed", "foxes"]) == "boxed"
     assert close("boxes", ["foxes", "boxed"]) == "foxes"
+
+
+@pytest.mark.rule("L6")
+@given(st.lists(st.text("abc12-", max_size=8), max_size=8), st.text("abc12-", max_size=8))
+def test_names_asked_for_many_times_are_close_as_names_asked_for_once(names: list[str], name: str) -> None:
+    assert Names(names).close(name) == close(name, names)
