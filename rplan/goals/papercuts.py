@@ -1,4 +1,5 @@
-"""Small checks on a reduced goal: channels that fight over an actuator, and channels that are read too early (L25).
+"""Small checks on a reduced goal: channels that fight over an actuator, and channels that are read too early or
+are never set (L25).
 
 Takes: the reduced goal, the outputs in their order and the scope. Gives: findings. Leaves alone: everything that needs
 to know which situations can be; see rplan/ways/coverage.py.
@@ -13,8 +14,10 @@ from rplan.lang.diagnostic import Related
 
 
 def check_channels(top: Goal, outputs: tuple[Output, ...], scope: Scope) -> None:
-    """Two command channels for one actuator are an error; a competence that reads a later channel is a warning."""
+    """Two command channels for one actuator are an error; reading a later channel or one never set is a warning."""
     order = {output.name: index for index, output in enumerate(outputs)}
+    filled = dict.fromkeys(output for output, _ in _values(top, outputs))
+    filled |= dict.fromkeys(output.name for output in outputs if output.initial is not None)
     drivers: dict[str, tuple[str, Term]] = {}
     for output, term in _values(top, outputs):
         function = scope.functions.get(term.name) if term.kind == "call" else None
@@ -30,6 +33,12 @@ def check_channels(top: Goal, outputs: tuple[Output, ...], scope: Scope) -> None
                     hint="let one channel drive it",
                 )  # fmt: skip
         for channel in function.reads:
+            if channel not in filled:
+                scope.findings.add(
+                    "warning", "reads-unset-channel",
+                    f"`{term.text}` reads the channel `{channel}`, which nothing sets", term.span,
+                    hint=f"set it in the same tick: `(do {channel} VALUE)`",
+                )  # fmt: skip
             if channel in order and order[channel] > order[output]:
                 scope.findings.add(
                     "warning", "reads-later-channel",
