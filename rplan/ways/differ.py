@@ -1,10 +1,12 @@
 """Situations in which two plans set their outputs differently.
 
-Takes: the `Ways` of two plans. Gives: `Difference`s: cubes of conditions, each with the simplest trace, and what either plan
-does there; or that there is none, proven. Leaves alone: competences; canonical text is all that is compared.
+Takes: the `Ways` of two plans. Gives: `Difference`s: cubes of conditions, each with the simplest trace, and what
+either plan does there; or that there is none, proven. Leaves alone: competences; canonical text is all that is
+compared.
 
-Both plans run side by side from the first tick on. Percepts of the same canonical text are the same percept. Compared are the outputs as the ways set them and whether there is a hole; where
-both leave an output open, what stands in its place (`:idle`, `:hold`).
+Both plans run side by side from the first tick on. Percepts of the same canonical text are the same percept.
+Compared are the outputs as the ways set them and whether there is a hole; where both leave an output open, what
+stands in its place (`:idle`, `:hold`).
 """
 
 from __future__ import annotations

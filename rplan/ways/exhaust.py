@@ -1,7 +1,7 @@
 """Every situation of a plan at once, where its atoms and registers are few.
 
-Takes: `Ways`. Gives: in how many situations a guard holds, how many ways are taken; for plans with memory an `Automaton`,
-which knows in which tick a state can first be. Leaves alone: plans with more; see reach.py.
+Takes: `Ways`. Gives: in how many situations a guard holds, how many ways are taken; for plans with memory an
+`Automaton`, which knows in which tick a state can first be. Leaves alone: plans with more; see reach.py.
 
 A guard is evaluated once on integers that carry one bit a situation, so 4,096 situations cost as much as one.
 """
@@ -24,6 +24,8 @@ MOST_ATOMS = 20
 MOST_BITS = 16
 """Of atoms and registers together that an automaton has."""
 MOST_COMPARISONS = 6
+NEVER = 1 << 40
+"""Costs more than any trace."""
 
 
 def has_comparisons(ways: Ways) -> bool:
@@ -108,35 +110,69 @@ class Automaton:
         self._of_register = dict(zip(registers, columns[len(atoms) :], strict=True))
         self._values: dict[int, int] = {}
         self._valid = can_be
+        self._registers, self._atoms = registers, atoms
         for guard in ways.assumed:
             self._valid &= self._value(guard)
+        self._following = self._transitions(registers)
         self._depth = self._breadth_first(registers)
 
     def first_tick(self, question: Question) -> int | None:
         """The first tick in which the question can be answered."""
+        ticks = self._depth[self._answering(question).any(axis=1) & (self._depth >= 0)]
+        return int(ticks.min()) if ticks.size else None
+
+    def _answering(self, question: Question) -> NDArray[np.bool_]:
         answering = self._valid
         for guard, value in question:
             answering &= self._value(guard) if value else ~self._value(guard)
-        ticks = self._depth[self._table(answering).any(axis=1) & (self._depth >= 0)]
-        return int(ticks.min()) if ticks.size else None
+        return self._table(answering)
+
+    def simplest(self, question: Question, tick: int, order: Sequence[int]) -> list[dict[int, bool]] | None:
+        """The atoms, tick by tick, of the trace that answers the question in this tick with the fewest of them true.
+
+        Of those the one whose atoms are false rather than true in the given order. None where atoms compare numbers.
+        """
+        if not all(isinstance(self._ways.atoms[number], Percept) for number in self._atoms):
+            return None
+        place = {number: 1 << n for n, number in enumerate(self._atoms)}
+        ranked = [number for number in order if number in place]
+        inputs = sorted(range(self._shape[1]), key=lambda chosen: [bool(chosen & place[n]) for n in ranked])
+        trues = np.array([chosen.bit_count() for chosen in inputs], dtype=np.int64)
+        costs = [np.where(self._answering(question)[:, inputs], trues, NEVER)]
+        valid, following = self._table(self._valid)[:, inputs], self._following[:, inputs]
+        for _ in range(tick):
+            costs.append(np.where(valid, trues + costs[-1].min(axis=1)[following], NEVER))
+        state, trace = self._first_state(self._registers), []
+        for cost in reversed(costs):
+            chosen = int(cost[state].argmin())
+            trace.append({number: bool(inputs[chosen] & place[number]) for number in self._atoms})
+            state = int(following[state, chosen])
+        return trace
 
     def _table(self, bits: int) -> NDArray[np.bool_]:
         """By state and atoms."""
         data = np.frombuffer(bits.to_bytes((self._size + 7) // 8, "little"), dtype=np.uint8)
         return np.unpackbits(data, bitorder="little")[: self._size].reshape(self._shape).astype(bool)
 
-    def _breadth_first(self, registers: tuple[int, ...]) -> NDArray[np.int64]:
-        """For each state the first tick that can begin in it; -1: none."""
+    def _transitions(self, registers: tuple[int, ...]) -> NDArray[np.int64]:
+        """The state that follows, by state and atoms."""
         following = np.zeros(self._shape, dtype=np.int64)
         for place, number in enumerate(registers):
             following |= self._table(self._value(self._ways.registers[number].next)).astype(np.int64) << place
+        return following
+
+    def _first_state(self, registers: tuple[int, ...]) -> int:
+        return sum(self._ways.registers[n].initial << place for place, n in enumerate(registers))
+
+    def _breadth_first(self, registers: tuple[int, ...]) -> NDArray[np.int64]:
+        """For each state the first tick that can begin in it; -1: none."""
         valid = self._table(self._valid)
         depth = np.full(self._shape[0], -1, dtype=np.int64)
-        here = np.array([sum(self._ways.registers[n].initial << place for place, n in enumerate(registers))])
+        here = np.array([self._first_state(registers)])
         tick = 0
         while here.size:
             depth[here] = tick
-            after = np.unique(following[here][valid[here]])
+            after = np.unique(self._following[here][valid[here]])
             here = after[depth[after] < 0]
             tick += 1
         return depth

@@ -1,7 +1,7 @@
 """The ways that can be taken, each with a situation.
 
-Takes: `Ways`. Gives: traces whose last tick takes one way each, as many as are wanted. Leaves alone: their order, which is
-that in which z3 comes upon them, and ways that show only late in the memory of a plan.
+Takes: `Ways`. Gives: traces whose last tick takes one way each, as many as are wanted. Leaves alone: their order,
+which is that in which z3 comes upon them, and ways that show only late in the memory of a plan.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from collections.abc import Iterator
 import z3
 
 from rplan.ways.reduce import Ways
+from rplan.ways.simplest import value_of
 from rplan.ways.situations import Trace, Unrolling, nothing
 
 LATEST = 12
@@ -45,10 +46,5 @@ def _read(ways: Ways, unrolling: Unrolling, model: z3.ModelRef, tick: int) -> Tr
     for (here, text), symbol in unrolling.symbols().items():
         value = model.eval(symbol, model_completion=True)
         if here <= tick:
-            trace[here][text] = z3.is_true(value) if z3.is_bool(value) else _number(value)
+            trace[here][text] = value_of(value)
     return tuple(trace)
-
-
-def _number(value: z3.ExprRef) -> float:
-    fraction = value.approx(12).as_fraction() if z3.is_algebraic_value(value) else value.as_fraction()
-    return float(fraction)

@@ -1,10 +1,11 @@
 """What a plan promises: properties of its text, and that what it maintains above all is done when it is asked for.
 
-Takes: `Ways`. Gives: `Promise`s, and for each whether it always holds, with the simplest trace that breaks it where it does
-not. Leaves alone: promises over several plans; see differ.py.
+Takes: `Ways`. Gives: `Promise`s, and for each whether it always holds, with the simplest trace that breaks it where
+it does not. Leaves alone: promises over several plans; see differ.py.
 
-A `(maint NAME)` that stands first in a `prio-and` that is never given up offers itself as a promise: in every tick in which
-the conditions around its acts hold, its acts are done. Acts of it that it may give up or choose among are not promised.
+A `(maint NAME)` that stands first in a `prio-and` that is never given up offers itself as a promise: in every tick
+in which the conditions around its acts hold, its acts are done. Acts of it that it may give up or choose among are
+not promised.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ Verdict = Literal["proven", "refuted", "unknown"]
 
 @dataclass(frozen=True, slots=True)
 class Promise:
-    """broken: what must be in one tick to break it, any of these. asked: what must be for it to say something at all."""
+    """broken: what breaks it, any of these in one tick. asked: where it says something at all."""
 
     name: str
     doc: str

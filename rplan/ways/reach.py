@@ -1,12 +1,13 @@
 """What can be in some tick of a plan, and when first; decided, never guessed.
 
-Takes: `Ways` and questions (guards and their values in one tick). Gives: whether and in which tick a question can first
-be answered, and the simplest trace that does (L26). Leaves alone: what is asked; see checks/, prove.py and differ.py.
+Takes: `Ways` and questions (guards and their values in one tick). Gives: whether and in which tick a question can
+first be answered, and the simplest trace that does (L26). Leaves alone: what is asked; see checks/, prove.py and
+differ.py.
 
 Samples show what is easily possible. Where few registers and atoms bear on the question every combination is tried
-(exhaust.py). Else z3 unrolls tick by tick and tries, tick by tick, to show by induction over paths without a repeated
-state that it never can be (registers are finite, so that ends); past a limit of ticks z3's Spacer has a go. What none of
-them settles within its budget is `Undecided`.
+(exhaust.py). Else z3 unrolls tick by tick and tries, tick by tick, to show by induction over paths without a
+repeated state that it never can be (registers are finite, so that ends); past a limit of ticks z3's Spacer has a go.
+What none of them settles within its budget is `Undecided`.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ from rplan.ways.situations import (
     Unrolling,
     cone,
     negated,
+    nothing,
     registers_in,
 )
 
@@ -62,7 +64,20 @@ class Reach:
         tick = self.first_tick(*question)
         if tick is None or isinstance(tick, Undecided):
             return tick
-        return simplest(self.ways, question, tick)
+        return self._counted_out(question, tick) or simplest(self.ways, question, tick)
+
+    def _counted_out(self, question: Question, tick: int) -> Trace | None:
+        """The simplest trace where every combination can be tried."""
+        guards = [*(guard for guard, _ in question), *self.ways.assumed]
+        registers = registers_in(self.ways, guards)
+        found = self._automaton(registers, guards) if registers else None
+        order = {term.text: place for place, term in enumerate(self.ways.goals.percepts())}
+        ranked = sorted(range(len(self.ways.atoms)), key=lambda number: order.get(self.ways.atoms[number].text, -1))
+        atoms = None if found is None else found.simplest(question, tick, ranked)
+        if atoms is None:
+            return None
+        named = ({self.ways.atoms[number].text: value for number, value in here.items()} for here in atoms)
+        return tuple(nothing(self.ways) | here for here in named)
 
     def first_tick(self, *question: tuple[int, bool]) -> int | Undecided | None:
         """The first tick in which the question can be answered; None if there is none."""

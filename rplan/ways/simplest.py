@@ -1,8 +1,8 @@
 """The simplest trace that shows something (L26).
 
-Takes: `Ways`, a question, and the tick in which it can first be. Gives: the trace with the fewest true percepts,
-of those the one whose percepts are false rather than true in textual order, tick by tick, with the simplest numbers that
-fit. Leaves alone: which tick that is; see reach.py.
+Takes: `Ways`, a question, and the tick in which it can first be. Gives: the trace with the fewest true percepts, of
+those the one whose percepts are false rather than true in textual order, tick by tick, with the simplest numbers
+that fit. Leaves alone: which tick that is; see reach.py.
 """
 
 from __future__ import annotations
@@ -26,6 +26,10 @@ def simplest(ways: Ways, question: Question, tick: int) -> Trace | Undecided:
     return _Search(ways, unrolling).trace(tick + 1)
 
 
+SIMPLE = 400_000
+"""For one step towards the simplest trace [z3's resource units]; where it does not suffice the trace stays as it is."""
+
+
 class _Search:
     """Settles one percept after the other."""
 
@@ -41,9 +45,14 @@ class _Search:
     def trace(self, ticks: int) -> Trace | Undecided:
         if self.solver.check() != z3.sat:
             return Undecided()
+        model = self.solver.model()
         found = [nothing(self.ways) for _ in range(ticks)]
-        self._fewest_true()
-        self._first_false()
+        self.solver.set("rlimit", SIMPLE)
+        try:
+            self._fewest_true(model)
+            self._first_false()
+        except TooHardError:
+            return _as_it_is(found, self.unrolling, model)
         self.solver.check()
         model = self.solver.model()
         for (tick, text), symbol in self.truths:
@@ -55,14 +64,14 @@ class _Search:
     def _true(self, model: z3.ModelRef) -> int:
         return sum(z3.is_true(model.eval(symbol, model_completion=True)) for _, symbol in self.truths)
 
-    def _fewest_true(self) -> None:
+    def _fewest_true(self, model: z3.ModelRef) -> None:
         flags = [(symbol, 1) for _, symbol in self.truths]
-        low, high = 0, self._true(self.solver.model())
+        low, high = 0, self._true(model)
         while low < high:
             most = low if low == 0 else (low + high) // 2
-            model = self._possible(z3.PbLe(flags, most))
-            if model is not None:
-                high = self._true(model)
+            better = self._possible(z3.PbLe(flags, most))
+            if better is not None:
+                high = self._true(better)
             else:
                 low = most + 1
         if flags:
@@ -83,8 +92,11 @@ class _Search:
         """A model of this as well; None where there is none."""
         self.solver.push()
         self.solver.add(*wanted)
-        model = self.solver.model() if self.solver.check() == z3.sat else None
+        answer = self.solver.check()
+        model = self.solver.model() if answer == z3.sat else None
         self.solver.pop()
+        if answer == z3.unknown:
+            raise TooHardError
         return model
 
     def _simplest_number(self, text: str, symbol: z3.ArithRef) -> float:
@@ -96,14 +108,31 @@ class _Search:
         self.solver.check()
         value = self.solver.model().eval(symbol, model_completion=True)
         self.solver.add(symbol == value)
-        fraction = value.approx(12).as_fraction() if z3.is_algebraic_value(value) else value.as_fraction()
-        return float(fraction)
+        return value_of(value)
 
     def _candidates(self, text: str) -> list[Fraction]:
         """Zero, what it is compared with, and values between and beyond, the nearest to zero first."""
         ordered = sorted({Fraction(0), *bounds(self.ways, text)})
         between = [(a + b) / 2 for a, b in pairwise(ordered)]
         return sorted({*ordered, *between, ordered[0] - 1, ordered[-1] + 1}, key=lambda value: (abs(value), -value))
+
+
+class TooHardError(Exception):
+    """A step took too long."""
+
+
+def _as_it_is(found: list[dict[str, bool | float]], unrolling: Unrolling, model: z3.ModelRef) -> Trace:
+    for (tick, text), symbol in unrolling.symbols().items():
+        found[tick][text] = value_of(model.eval(symbol, model_completion=True))
+    return tuple(found)
+
+
+def value_of(value: z3.ExprRef) -> bool | float:
+    """What z3 found, as the language has it."""
+    if z3.is_bool(value):
+        return z3.is_true(value)
+    fraction = value.approx(12).as_fraction() if z3.is_algebraic_value(value) else value.as_fraction()
+    return float(fraction)
 
 
 def bounds(ways: Ways, text: str) -> list[Fraction]:

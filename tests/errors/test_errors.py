@@ -10,6 +10,7 @@ from __future__ import annotations
 import ast
 import os
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -31,9 +32,10 @@ NOT_BY_TEXT = ("not-decided",)
 
 def findings(source: Source) -> tuple[Diagnostic, ...]:
     command = source.text.partition("\n")[0].split()
+    checks = partial(review, notes="--verbose" in command)
     try:
         compiled = compile_source(
-            source, strict="--strict" in command, allow_holes="--allow-holes" in command, checks=review
+            source, strict="--strict" in command, allow_holes="--allow-holes" in command, checks=checks
         )
         if "simulate" in command:
             PlanBrain(compiled)

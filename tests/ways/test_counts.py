@@ -12,9 +12,10 @@ from properties.texts import compiled
 
 from rplan.goals.goal import Goal
 from rplan.ways.count import count
-from rplan.ways.exhaust import count_sampled_ways, count_ways, exhaustible
+from rplan.ways.exhaust import count_ways, exhaustible
 from rplan.ways.guards import FALSE, TRUE, Guards
 from rplan.ways.reduce import reduce
+from rplan.ways.sample import Samples
 
 ATOMS = 3
 
@@ -69,14 +70,14 @@ def test_ways_are_counted_as_if_each_situation_were_tried_and_samples_show_no_mo
         if not values[ways.hole]:
             taken.add(tuple(values[guard] for guard in (*ways.reached, *ways.given_up)))
     assert count_ways(ways) == len(taken)
-    assert count_sampled_ways(ways) <= len(taken)
+    assert Samples(ways).count_ways() <= len(taken)
 
 
 def test_a_plan_of_many_percepts_is_counted_by_samples() -> None:
     text = "(goalem (and " + " ".join(f"(when (p{n}) (do x{n} on))" for n in range(25)) + "))"
     ways = compiled(text).ways
     assert not exhaustible(ways)
-    assert 1_000 < count_sampled_ways(ways) < 2**25
+    assert 1_000 < Samples(ways).count_ways() < 2**25
 
 
 def test_a_plan_that_compares_numbers_is_not_counted_by_its_atoms() -> None:

@@ -21,9 +21,9 @@ DIFFERENT = 1
 def command(a: str, b: str, as_json: bool) -> None:
     """Say in which situations the plans A and B set their outputs differently.
 
-    Both run side by side from the first tick on; percepts of the same name are the same. Each difference is a condition,
-    with the simplest trace that comes to it and the rules behind both sides. Exit code 0 if the plans are proven equal,
-    1 if they differ or it is not decided.
+    Both run side by side from the first tick on; percepts of the same name are the same. Each difference is a
+    condition, with the simplest trace that comes to it and the rules behind both sides. Exit code 0 if the plans are
+    proven equal, 1 if they differ or it is not decided.
     """
     first, second = (talk.compiled(plan_file(plan), allow_holes=True, as_json=True) for plan in (a, b))
     try:

@@ -19,6 +19,6 @@ def check_assumptions(reach: Reach) -> Iterator[Diagnostic]:
     assumptions = reach.ways.goals.assumptions
     if assumptions and reach.first_tick((TRUE, True)) is None:
         yield Diagnostic(
-            "no-situation", "warning", "what is assumed cannot all be: no situation is left, and all else holds emptily",
+            "no-situation", "warning", "what is assumed cannot all be: no situation is left",
             assumptions[0].span, also("and this", (one.span for one in assumptions[1:])),
         )  # fmt: skip

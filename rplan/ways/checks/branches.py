@@ -1,7 +1,7 @@
-"""Parts of a plan that are never reached: conditions whose answer is known, members never served, alternatives never taken.
+"""Parts of a plan that are never reached: known answers, members never served, alternatives never taken.
 
-Takes: a `Reach`. Gives: one warning for each such part, at the outermost place, with everything inside it that is never
-done. Leaves alone: a rule that stands in several places and is reached in one of them.
+Takes: a `Reach`. Gives: one warning for each such part, at the outermost place, with everything inside it that is
+never done. Leaves alone: a rule that stands in several places and is reached in one of them.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ class _Branches:
             )  # fmt: skip
         reasons = dict.fromkeys(span for node in reached for span in self._reasons(node, not value))
         return Diagnostic(
-            f"always-{word}", "warning", f"`{text}` is always {word} where it is asked", place.goal.span,
+            "always-true" if value else "always-false", "warning", f"`{text}` is always {word} where it is asked", place.goal.span,
             (*also("after what is asked here", reasons), *lost), "leave the question out, or mend it",
         )  # fmt: skip
 
@@ -137,7 +137,8 @@ class _Branches:
                 first = goals[texts.index(texts[-1])]
                 yield Diagnostic(
                     "duplicate-rule", "warning", f"{label(goals[-1])} is the same as an alternative before it",
-                    goals[-1].span, (Related("the same is here", first.span), *self._lost(here)), "leave one of them out",
+                    goals[-1].span, (Related("the same is here", first.span), *self._lost(here)),
+                    "leave one of them out",
                 )  # fmt: skip
             elif all(self.alone[child] for child in here):
                 yield Diagnostic(

@@ -1,7 +1,7 @@
 """Acts that do not go together, and alternatives between which nothing but their order decides.
 
-Takes: a `Reach`. Gives: notes with the simplest situation that shows each. Leaves alone: conflicts that nothing gives way
-to; those are holes.
+Takes: a `Reach`. Gives: notes with the simplest situation that shows each. Leaves alone: conflicts that nothing
+gives way to; those are holes.
 """
 
 from __future__ import annotations

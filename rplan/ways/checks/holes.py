@@ -1,6 +1,7 @@
 """Situations in which no way is open, and outputs that must not stay open and do.
 
-Takes: a `Reach`. Gives: an error for each with the simplest trace that shows it. Leaves alone: why a member was given up.
+Takes: a `Reach`. Gives: an error for each with the simplest trace that shows it. Leaves alone: why a member was
+given up.
 """
 
 from __future__ import annotations
