@@ -18,7 +18,7 @@ from rplan.circuit.circuit import Circuit
 from rplan.goals.expand import expand
 from rplan.goals.goal import Goals
 from rplan.goals.signature import Libraries
-from rplan.lang.depth import deep_recursion
+from rplan.lang.depth import deep_recursion, no_collection
 from rplan.lang.diagnostic import Diagnostic, PlanError
 from rplan.lang.include import OpenFile, gather, no_files
 from rplan.lang.parse import parse_gathered
@@ -101,7 +101,7 @@ def compile_plan(
     strict: a name that nothing declares is an error. allow_holes: a hole is a warning. Raises `PlanError` with all that
     is wrong; what was only noticed is in `Compiled.diagnostics`.
     """
-    with deep_recursion():
+    with deep_recursion(), no_collection():
         plan, said, sources = load(source, open_file)
         texts = texts_of(sources)
         found = list(said)

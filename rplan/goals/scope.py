@@ -15,7 +15,7 @@ from rplan.lang.diagnostic import Diagnostic, Related, Severity
 from rplan.lang.plan import Call, NamedCondition, OutputDeclaration, Plan, Rule, Type
 from rplan.lang.printer import print_head
 from rplan.lang.source import Span
-from rplan.lang.suggest import close
+from rplan.lang.suggest import Names, close
 
 Asks = Literal["nothing", "outputs", "percepts"]
 """What the condition at hand may ask of this tick: in a property outputs, in an assumption percepts alone."""
@@ -73,6 +73,7 @@ class Scope:
     recursive: dict[str, Call] = field(default_factory=dict)
     used: dict[tuple[str, str], None] = field(default_factory=dict)
     unknown: dict[tuple[str, str], None] = field(default_factory=dict)
+    spaces: dict[str, Names] = field(default_factory=dict)
     taken: dict[str, tuple[Type, Span]] = field(default_factory=dict)
     channels: dict[str, Type | None] = field(default_factory=dict)
     asks: Asks = "nothing"
@@ -83,9 +84,8 @@ class Scope:
         self.used[("function", name)] = None
         if name in self.functions:
             return self.functions[name]
-        names = [*self.functions, *(self.conditions if what == "condition" else ())]
         space = "condition" if what == "condition" else "function"
-        self.stranger(space, name, names, span, f"`{name}` is declared nowhere: it is taken for a {what}")
+        self.stranger(space, name, span, f"`{name}` is declared nowhere: it is taken for a {what}")
         return None
 
     def take_for(self, name: str, kind: Type, span: Span) -> None:
@@ -104,19 +104,26 @@ class Scope:
         self.used[("output", name)] = None
         if name in self.outputs:
             return self.outputs[name]
-        self.stranger(
-            "output", name, list(self.outputs), span, f"`{name}` is declared nowhere: it is taken for an output"
-        )
+        self.stranger("output", name, span, f"`{name}` is declared nowhere: it is taken for an output")
         return None
 
-    def stranger(self, space: str, name: str, known: list[str], span: Span, note: str) -> None:
+    def _known(self, space: str) -> Names:
+        """The names of a name space; asked once the tables are complete."""
+        if space not in self.spaces:
+            names = [*self.outputs] if space == "output" else [*self.functions]
+            self.spaces[space] = Names([*names, *self.conditions] if space == "condition" else names)
+        return self.spaces[space]
+
+    def stranger(self, space: str, name: str, span: Span, note: str) -> None:
         """A name that nothing declares: an error where it is close to one that is known, else a note (L6)."""
-        meant = close(name, known)
+        if (space, name) in self.unknown:
+            return
+        meant = self._known(space).close(name)
         if meant is not None:
             self.findings.add(
                 "error", "misspelt", f"no {space} is called `{name}`", span, hint=f"did you mean `{meant}`?"
             )
-        elif (space, name) not in self.unknown:
+        else:
             self.unknown[(space, name)] = None
             self.findings.add("error" if self.strict else "note", "undeclared", note, span)
 

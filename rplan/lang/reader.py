@@ -9,10 +9,8 @@ other, and is reported once.
 
 from __future__ import annotations
 
-import gc
 import re
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -20,7 +18,7 @@ from typing import Literal
 
 from lark import Lark, Token
 
-from rplan.lang.depth import MAX_LEVELS
+from rplan.lang.depth import MAX_LEVELS, no_collection
 from rplan.lang.diagnostic import Diagnostic, PlanError, Related
 from rplan.lang.source import Source, Span
 from rplan.lang.suggest import close
@@ -117,7 +115,7 @@ def read_with_errors(source: Source) -> tuple[tuple[Form, ...], tuple[Diagnostic
     errors: list[Diagnostic] = []
     text = _without_regions(source, errors)
     fold = _Fold(Source(source.name, text), errors)
-    with _no_collection():
+    with no_collection():
         for token in _tokens(text):
             fold.take(token)
     fold.end_chunk(None)
@@ -242,18 +240,6 @@ _KINDS: dict[str, Literal["open", "close", "word", "comment", "region"]] = {
 # --- words ----------------------------------------------------------------------------------------
 
 _HEAD = re.compile(r'\(([^\s()";]+)')
-
-
-@contextmanager
-def _no_collection() -> Iterator[None]:
-    """Without the collector of cycles: a long plan makes a million objects and no cycle, and reads twice as fast."""
-    enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if enabled:
-            gc.enable()
 
 
 _MAX_RESUMPTIONS = 10
