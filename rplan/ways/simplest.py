@@ -130,7 +130,7 @@ def _as_it_is(found: list[dict[str, bool | float]], unrolling: Unrolling, model:
 def value_of(value: z3.ExprRef) -> bool | float:
     """What z3 found, as the language has it."""
     if z3.is_bool(value):
-        return z3.is_true(value)
+        return bool(z3.is_true(value))
     fraction = value.approx(12).as_fraction() if z3.is_algebraic_value(value) else value.as_fraction()
     return float(fraction)
 

@@ -35,7 +35,7 @@ def warnings(text: str) -> list[str]:
         ("(goalem (or (do x a) (do x b)))", ["shadowed"]),
         ("(goalem (and (or (do x a) (do x b)) (when (p) (do x b))))", []),
         ("(goalem (or (do x a) (do x a)))", ["duplicate-rule"]),
-        ("(goalem (and (once (p)) (do x a)))".replace("(and (once (p)) ", "(when (and (once (p)) (historically (not (p)))) "), ["always-false", "never-set"]),
+        ("(goalem (when (and (once (p)) (historically (not (p)))) (do x a)))", ["always-false", "never-set"]),
         ("(goalem (when (held-for 3s (p)) (do x a)))", []),
         ("(assume (not (p))) (goalem (if (p) (do x a) (do x b)))", ["always-false"]),
         ("(assume (p)) (assume (not (p))) (goalem (do x a))", ["no-situation", "never-set"]),

@@ -95,7 +95,8 @@ class _Branches:
             )  # fmt: skip
         reasons = dict.fromkeys(span for node in reached for span in self._reasons(node, not value))
         return Diagnostic(
-            "always-true" if value else "always-false", "warning", f"`{text}` is always {word} where it is asked", place.goal.span,
+            "always-true" if value else "always-false", "warning",
+            f"`{text}` is always {word} where it is asked", place.goal.span,
             (*also("after what is asked here", reasons), *lost), "leave the question out, or mend it",
         )  # fmt: skip
 
