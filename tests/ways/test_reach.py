@@ -8,7 +8,7 @@ from itertools import product
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from properties.strategies import ATOMS, do, percept, remembering, whole
+from properties.strategies import ATOMS, do, remembering, whole
 from properties.texts import compiled, decider, findings
 
 from rplan.goals.condition import Condition

@@ -18,21 +18,34 @@ from rplan.ways.reduce import Ways
 from rplan.ways.situations import Trace, Undecided, replay
 from rplan.ways.way import label, wants
 
+MOST_SHOWN = 100
+"""Members given up that are shown with a situation each; the others are counted."""
+
 
 def check_conflicts(reach: Reach) -> Iterator[Diagnostic]:
     """Members that are given up because an act of theirs does not go together with what is kept."""
     ways = reach.ways
     members = {member.node: member for member in ways.layout.members[1:]}
+    found, others = 0, []
     for place in places(ways, lambda node: (node.goal.span, label(node.goal)) if node.number in members else None):
         for node in place.nodes:
             member = members[node.number]
             own = ((ways.given_up[member.before], False),) if member.before else ()
+            if found == MOST_SHOWN:
+                if reach.possible((ways.given_up[member.number], True), *own) is not False:
+                    others.append(node.goal)
+                    break
+                continue
             trace = reach.trace((ways.given_up[member.number], True), *own)
             if isinstance(trace, Undecided):
                 yield not_decided(f"whether {label(node.goal)} is ever given up", node.goal.span)
             elif trace is not None:
                 yield _given_up(ways, node, trace)
+                found += 1
                 break
+    if others:
+        message = f"{len(others):,} more members are given up in some situation"
+        yield Diagnostic("two-values", "note", message, others[0].span)
 
 
 def _given_up(ways: Ways, node: Node, trace: Trace) -> Diagnostic:
