@@ -6,6 +6,7 @@ Takes: nothing. Gives: strategies that the property tests share. Leaves alone: t
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import cast
 
 from hypothesis import strategies as st
 
@@ -25,7 +26,7 @@ from rplan.goals.condition import (
 )
 from rplan.goals.goal import And, Anything, Do, Goal, Goals, If, Impossible, Or, Output, PrioAnd, walk
 from rplan.goals.signature import BOOL
-from rplan.lang.plan import Comparator, Type
+from rplan.lang.plan import Comparator, Past, Type
 from rplan.lang.source import NOWHERE
 
 ATOMS = ("(a)", "(b)", "(c)", "(d)")
@@ -80,8 +81,18 @@ def conditions(*, numbers: bool = False) -> st.SearchStrategy[Condition]:
 
 
 @st.composite
-def goals(draw: st.DrawFn, *, alternatives: bool = True, numbers: bool = False, max_leaves: int = 12) -> Goal:
-    """Goals that often conflict: a few outputs of two values, every kind of joint."""
+def goals(
+    draw: st.DrawFn,
+    *,
+    alternatives: bool = True,
+    numbers: bool = False,
+    impossible: bool = False,
+    max_leaves: int = 12,
+) -> Goal:
+    """Goals that often conflict: a few outputs of two values, every kind of joint.
+
+    impossible: with places that no way leads through; texts cannot say so, regression can.
+    """
     kinds: list[type[Goal]] = [If, If, And, And, PrioAnd, PrioAnd, *([Or] if alternatives else [])]
 
     def grow(leaves: int) -> Goal:
@@ -89,7 +100,7 @@ def goals(draw: st.DrawFn, *, alternatives: bool = True, numbers: bool = False, 
             chance = draw(st.integers(0, 15))
             if chance >= 14:
                 return Anything("(goalem)", NOWHERE)
-            if chance == 13:
+            if chance == 13 and impossible:
                 return Impossible(NOWHERE)
             return do(draw(st.sampled_from(("x", *OUTPUTS))), draw(st.sampled_from(VALUES)))
         kind = draw(st.sampled_from(kinds))
@@ -156,7 +167,7 @@ def remember(form: str, parts: list[Condition], *, initial: bool, ticks: int) ->
     if form == "at-least" and two:
         words.insert(-1, ":reset")
     counted = ticks if form in ("held-for", "within", "at-least") else 0
-    return Memory(f"({' '.join(words)})", form, used, initial, counted)  # type: ignore[arg-type]
+    return Memory(f"({' '.join(words)})", cast(Past, form), used, initial, counted)
 
 
 MEMORY_FORMS = ("delay", "once", "historically", "since", "latch", "rose", "fell", "held-for", "within", "at-least")
