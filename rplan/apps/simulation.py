@@ -133,7 +133,7 @@ class _Watch:
             return "it is the first tick"
         before = self.brain.trace.way(self.last)
         asked = [branch.condition for branch in (*way.branches, *before.branches)]
-        atoms = self.brain.compiled.ways.atoms
+        atoms = self.brain.compiled.ways.atoms[: self.brain.compiled.ways.asking]
         changed = [
             f"{atom.text} became {'true' if now else 'false'}"
             for atom, was, now in zip(atoms, self.last.inputs, decision.inputs, strict=True)

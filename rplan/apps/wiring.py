@@ -77,7 +77,9 @@ def from_disk(path: str) -> Source:
 
 def decider(compiled: Compiled) -> Decider:
     """A plan that decides, run by generated Python."""
-    return Decider(compiled.goals, compiled.ways.atoms, compiled.circuit, PythonEngine(compiled.circuit))
+    return Decider(
+        compiled.goals, compiled.ways.atoms[: compiled.ways.asking], compiled.circuit, PythonEngine(compiled.circuit)
+    )
 
 
 def crew(compiled: Compiled) -> Crew[Command]:
@@ -164,7 +166,7 @@ def plan_header(compiled: Compiled, sha256: str) -> Mapping[str, object]:
         "file": Path(compiled.source.name).name,
         "text": compiled.source.text,
         "sha256": sha256,
-        "inputs": [atom.text for atom in compiled.ways.atoms],
+        "inputs": [atom.text for atom in compiled.ways.atoms[: compiled.ways.asking]],
         "outputs": [output.name for output in goals.outputs],
         "rules": [{"rule": r.head, "line": r.span.line, "end_line": r.span.end_line} for r in goals.rules],
     }

@@ -31,9 +31,9 @@ def build(ways: Ways) -> Circuit:
     ]
     return Circuit(
         name=ways.goals.name,
-        inputs=tuple(Port(atom.text, (_place(atom),)) for atom in ways.atoms),
+        inputs=tuple(Port(atom.text, (_place(atom),)) for atom in ways.atoms[: ways.asking]),
         registers=tuple(Register(one.name, one.initial, one.next) for one in ways.registers[: ways.driving]),
-        cells=tuple(_cell(node, ways.driving) for node in ways.guards.nodes),
+        cells=tuple(_cell(node, ways.asking, ways.driving) for node in ways.guards.nodes),
         outputs=tuple(outputs),
     )
 
@@ -42,14 +42,14 @@ def _place(atom: Atom) -> Span:
     return atom.term.span if isinstance(atom, Percept) else atom.left.span
 
 
-def _cell(node: Node, registers: int) -> Cell:
+def _cell(node: Node, inputs: int, registers: int) -> Cell:
     """The cell of a guard; what serves properties alone reads nothing and is swept away."""
     kind, a, b = node
     match kind:
         case "constant":
             return Cell(Op.CONSTANT, (), a)
         case "atom":
-            return Cell(Op.INPUT, (), a)
+            return Cell(Op.INPUT, (), a) if a < inputs else Cell(Op.CONSTANT)
         case "register":
             return Cell(Op.REGISTER, (), a) if a < registers else Cell(Op.CONSTANT)
         case "not":

@@ -231,7 +231,7 @@ class _Reducer:
         goal: g.Goal = g.Impossible(span)
         for clause in reversed(clauses):
             act = g.Anything(head, span) if clause.act is None else self.goal(clause.act, head)
-            goal = self._sized(g.If(resolve_condition(clause.condition, self.scope), act, goal, head, act.span))
+            goal = self._sized(g.If(resolve_condition(clause.condition, self.scope), act, goal, head, act.span, True))
         return self._sized(g.Reduced(head, goal, span, self.operators[0].span))
 
     def _achieve(self, goal: p.Achieve) -> g.Goal:

@@ -48,6 +48,8 @@ class If:
     otherwise: Goal
     rule: str
     span: Span
+    generated: bool = False
+    """No text asks for it: it comes from operators."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,18 +186,25 @@ class Goals:
     assumptions: tuple[Assumption, ...] = ()
     tests: tuple[Trial, ...] = ()
 
-    def conditions(self) -> Iterator[Condition]:
-        """Every condition that is asked, those of the top goal first."""
+    def driving(self) -> Iterator[Condition]:
+        """The conditions that are asked where the plan drives."""
         yield from conditions(self.top)
         yield from self.definitions.values()
+
+    def conditions(self) -> Iterator[Condition]:
+        """Every condition that is asked, those that drive first."""
+        yield from self.driving()
         for one in self.properties:
             yield from (one.always, one.provided)
         yield from (one.condition for one in self.assumptions)
 
-    def percepts(self) -> tuple[Term, ...]:
-        """The functions that stand in conditions, once each, in textual order of the reduced goal."""
+    def percepts(self, *, driving: bool = False) -> tuple[Term, ...]:
+        """The functions that stand in conditions, once each, in textual order of the reduced goal.
+
+        driving: only those that the plan reads where it drives, not what properties alone ask.
+        """
         seen: dict[str, Term] = {}
-        for condition in self.conditions():
+        for condition in self.driving() if driving else self.conditions():
             for atom in atoms_of(condition):
                 for term in percept_terms(atom):
                     seen.setdefault(term.text, term)

@@ -87,7 +87,7 @@ class Controller(Generic[C]):
     def _bind(self) -> list[tuple[str, Callable[[], PerceptValue]]]:
         bound: list[tuple[str, Callable[[], PerceptValue]]] = []
         missing: list[Term] = []
-        for term in self.decider.goals.percepts():
+        for term in self.decider.goals.percepts(driving=True):
             if term.name == COMPETENCE_FAILED.name:
                 bound.append((term.text, self._failed(term.arguments[0].name)))
             elif term.name in self.crew.percepts and not term.arguments:

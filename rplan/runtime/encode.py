@@ -30,7 +30,7 @@ class PerceptError(ValueError):
 
 def encoder(goals: Goals, atoms: Sequence[Atom]) -> Encode:
     """The function from percept values to the inputs of the circuit, in the order of `atoms`."""
-    percepts = goals.percepts()
+    percepts = goals.percepts(driving=True)
     names = {term.text: f"p{n}" for n, term in enumerate(percepts)}
     numeric = {term.text for atom in atoms if isinstance(atom, Comparison) for term in percept_terms(atom)}
     lines = ["def encode(values):", "    try:"]

@@ -11,6 +11,7 @@ first counts. That is the order of L18; meaning.py says the same the long way.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from rplan.goals.condition import (
@@ -49,7 +50,7 @@ class Ways:
     sets: output -> canonical text of a value -> guard, in textual order. hole: no way is open. reached: node number ->
     served by the way that is taken; given_up: member number -> given up by it. asked: node number -> condition of an
     `if` (true elsewhere). atoms, registers: what guards ask, by number.
-    driving: so many registers, the first ones, serve the goal; the others serve properties alone.
+    asking, driving: so many atoms and registers, the first ones, serve the goal; the others serve properties alone.
     claims: of the properties, in their order; assumed: what may be taken for granted.
     on_offer: (node number of an `or`, alternative) -> it goes, and no other way gives up less.
     """
@@ -58,6 +59,7 @@ class Ways:
     layout: Layout
     guards: Guards
     atoms: tuple[Atom, ...]
+    asking: int
     registers: tuple[Register, ...]
     driving: int
     asked: tuple[int, ...]
@@ -127,11 +129,9 @@ class _Reducer:
         self.registers = Registers(self.guards, self.guard_of)
         self.sets: dict[str, dict[str, int]] = {}
         self.layout = lay_out(goals.top)
-        for condition in goals.conditions():
-            for atom in atoms_of(condition):
-                if atom.text not in self.atoms:
-                    self.atoms[atom.text] = len(self.atom_list)
-                    self.atom_list.append(atom)
+        self._number_atoms(goals.driving())
+        self.asking = len(self.atom_list)
+        self._number_atoms(goals.conditions())
         alternatives = Alternatives(self.layout, self.guards, self.guard_of, limit)
         self.options = [
             [_Option(choice, choice.guard, _Claims(self.guards)) for choice in choices]
@@ -139,6 +139,13 @@ class _Reducer:
         ]
         self.touches, self.sizes = self._measure()
         self.kept: dict[int, int] = {0: TRUE}
+
+    def _number_atoms(self, conditions: Iterable[Condition]) -> None:
+        for condition in conditions:
+            for atom in atoms_of(condition):
+                if atom.text not in self.atoms:
+                    self.atoms[atom.text] = len(self.atom_list)
+                    self.atom_list.append(atom)
 
     def guard_of(self, condition: Condition) -> int:
         """The guard of a condition; the same object is translated once."""
@@ -327,6 +334,7 @@ class _Reducer:
             layout=self.layout,
             guards=self.guards,
             atoms=tuple(self.atom_list),
+            asking=self.asking,
             registers=self.registers.finished(),
             driving=driving,
             asked=tuple(

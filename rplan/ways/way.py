@@ -57,6 +57,7 @@ class TakenWay:
 
 def taken_way(ways: Ways, atoms: Sequence[bool], registers: Sequence[bool] = ()) -> TakenWay:
     """The way taken where atoms and registers (by number, the driving ones) have these values."""
+    atoms = (*atoms, *(False for _ in ways.atoms[len(atoms) :]))
     every = (*registers, *(False for _ in ways.registers[len(registers) :]))
     values = ways.guards.evaluate(atoms, every)
     served = [node for node in ways.layout.nodes if values[ways.reached[node.number]]]

@@ -9,6 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from rplan.apps.cli import cli
+from rplan.apps.wiring import compile_file, decider
 
 FIGURE = Path(__file__).parents[2] / "plans" / "figure_1" / "text.rplan"
 EXCLUSIVE = """
@@ -80,3 +81,16 @@ def test_a_plan_that_promises_nothing_says_so(tmp_path: Path) -> None:
     plan = tmp_path / "p.rplan"
     plan.write_text("(goalem (do x a))")
     assert "promises nothing" in CliRunner().invoke(cli, ["prove", str(plan)]).stdout
+
+
+def test_what_a_property_alone_asks_is_not_needed_to_drive(tmp_path: Path) -> None:
+    plan = tmp_path / "aside.rplan"
+    plan.write_text(
+        "(declare (near) bool) (declare (lost) bool) (declare (go) command)\n"
+        "(defproperty aside :always (or (near) (once (lost)) (= action (go))))\n"
+        "(defoutput action command)\n(goalem (when (near) (do action (go))))\n"
+    )
+    compiled = compile_file(plan)
+    assert [port.name for port in compiled.circuit.inputs] == ["(near)"]
+    assert compiled.circuit.registers == ()
+    assert decider(compiled).tick({"(near)": True}).outputs["action"] is not None

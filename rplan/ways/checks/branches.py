@@ -63,7 +63,7 @@ class _Branches:
         for place in self.every:
             reached = [node for node in place.nodes if not self.alone[node.number]]
             match place.goal:
-                case If(condition=condition) if reached:
+                case If(condition=condition, generated=False) if reached:
                     yield from self._condition(place, reached, print_condition(condition))
                 case Or() if reached:
                     yield from self._alternatives(reached)
