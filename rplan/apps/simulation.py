@@ -14,6 +14,7 @@ from importlib.metadata import version
 from pathlib import Path
 from time import perf_counter
 
+from rplan.apps.libraries import Catalogue
 from rplan.apps.wiring import PlanBrain, plan_header
 from rplan.driver import Compiled
 from rplan.runtime.tick import Decision
@@ -155,12 +156,13 @@ def simulate(
     until: float | None = None,
     record: Path | None = None,
     progress: Callable[[float, str], None] | None = None,
+    libraries: Catalogue | None = None,
 ) -> Run:
     """Drive one episode.
 
     Raises `PlanError` (unbound functions), `ScenarioError` (no layout for this seed), `OSError`.
     """
-    brain = PlanBrain(compiled)
+    brain = PlanBrain(compiled, libraries)
     episode = Episode(world.scenario, seed)
     commands = tuple(o.name for o in compiled.goals.outputs if o.type is not None and o.type.name == "command")
     with _recorder(record, compiled, world, episode) as recorder:

@@ -6,13 +6,14 @@ Takes: diagnostics, plain values. Gives: text, and the exit code where a plan is
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, NoReturn
 
 import click
 
-from rplan.apps.files import unreadable
+from rplan.apps.files import InputError, unreadable
+from rplan.apps.libraries import Catalogue, LibraryError, catalogue
 from rplan.apps.wiring import compile_file
 from rplan.driver import Checks, Compiled, no_checks
 from rplan.lang.diagnostic import Diagnostic, PlanError, render
@@ -32,7 +33,7 @@ def compiled(
 ) -> Compiled:
     """The plan in a file, compiled; says what is to be said and leaves with 1 if it is wrong."""
     try:
-        plan = compile_file(path, strict=strict, allow_holes=allow_holes, checks=checks)
+        plan = compile_file(path, strict=strict, allow_holes=allow_holes, checks=checks, libraries=libraries())
     except PlanError as error:
         wrong(error, path, as_json=as_json, verbose=verbose)
     except OSError as error:
@@ -40,6 +41,32 @@ def compiled(
     if not as_json:
         say(plan.diagnostics, plan.texts, every_note=verbose)
     return plan
+
+
+KEY = "rplan.libraries"
+
+
+def with_libraries(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The option `--library FILE.py` of a command; `libraries` gives what it names."""
+
+    def keep(context: click.Context, _: click.Parameter, files: tuple[Path, ...]) -> None:
+        try:
+            context.meta[KEY] = catalogue(files)
+        except LibraryError as error:
+            raise InputError(str(error)) from None
+
+    kind = click.Path(path_type=Path)
+    says = "A library of behaviours in a Python file; may be given more than once."
+    option = click.option(
+        "--library", "library_files", multiple=True, type=kind, callback=keep, expose_value=False, help=says
+    )
+    return option(command)
+
+
+def libraries() -> Catalogue:
+    """Every library that there is for the command that runs."""
+    found: Catalogue = click.get_current_context().meta[KEY]
+    return found
 
 
 def wrong(error: PlanError, path: Path, *, as_json: bool = False, verbose: bool = False) -> NoReturn:

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from behaviours.catalogue import LIBRARIES
 from behaviours.interface import STOP, Command, Competence, Library, Pose, Reading, Workshop
+from rplan.apps.libraries import Catalogue, catalogue
 from rplan.backends.python import PythonEngine
 from rplan.driver import Checks, Compiled, compile_plan, no_checks
 from rplan.goals.signature import FunctionSignature, Libraries, LibrarySignature, ParameterSignature
@@ -36,16 +36,22 @@ def signature(library: Library) -> LibrarySignature:
     return LibrarySignature(library.name, functions, parameters, library.doc)
 
 
-def signatures() -> Libraries:
-    """Every library that there is."""
-    return {name: signature(library) for name, library in LIBRARIES.items()}
+def signatures(libraries: Catalogue | None = None) -> Libraries:
+    """The libraries as the compiler sees them; without any named, every one that there is."""
+    return {name: signature(library) for name, library in (libraries or catalogue()).items()}
 
 
 def compile_file(
-    path: Path, *, strict: bool = False, allow_holes: bool = False, checks: Checks = no_checks
+    path: Path,
+    *,
+    strict: bool = False,
+    allow_holes: bool = False,
+    checks: Checks = no_checks,
+    libraries: Catalogue | None = None,
 ) -> Compiled:
-    """The plan in a file, compiled against every library; `PlanError`, `OSError`."""
-    return compile_source(source_from_file(path), strict=strict, allow_holes=allow_holes, checks=checks)
+    """The plan in a file, compiled against the libraries; `PlanError`, `OSError`."""
+    source = source_from_file(path)
+    return compile_source(source, strict=strict, allow_holes=allow_holes, checks=checks, libraries=libraries)
 
 
 def compile_source(
@@ -55,16 +61,23 @@ def compile_source(
     allow_holes: bool = False,
     checks: Checks = no_checks,
     open_file: OpenFile | None = None,
+    libraries: Catalogue | None = None,
 ) -> Compiled:
-    """A plan compiled against every library; `PlanError`, also where a library refuses its parameters.
+    """A plan compiled against the libraries; `PlanError`, also where a library refuses its parameters.
 
-    open_file: where included files come from, without it the disk.
+    open_file: where included files come from, without it the disk. libraries: without any, every one that there is.
     """
+    offered = libraries or catalogue()
     compiled = compile_plan(
-        source, signatures(), strict=strict, allow_holes=allow_holes, checks=checks, open_file=open_file or from_disk
+        source,
+        signatures(offered),
+        strict=strict,
+        allow_holes=allow_holes,
+        checks=checks,
+        open_file=open_file or from_disk,
     )
     try:
-        crew(compiled)
+        crew(compiled, offered)
     except PlanError as error:
         raise PlanError(error.diagnostics, compiled.texts) from None
     return compiled
@@ -82,8 +95,9 @@ def decider(compiled: Compiled) -> Decider:
     )
 
 
-def crew(compiled: Compiled) -> Crew[Command]:
+def crew(compiled: Compiled, libraries: Catalogue | None = None) -> Crew[Command]:
     """The libraries of a plan brought to life; `PlanError` where a library refuses its parameters."""
+    offered = libraries or catalogue()
     workshop = Workshop()
     percepts: dict[str, Callable[[], bool | float]] = {}
     values: dict[str, Callable[[Channels], object]] = {}
@@ -91,7 +105,7 @@ def crew(compiled: Compiled) -> Crew[Command]:
     refused: list[Diagnostic] = []
     for bound in compiled.goals.libraries:
         try:
-            offer = LIBRARIES[bound.name].build(bound.settings, workshop)
+            offer = offered[bound.name].build(bound.settings, workshop)
         except ValueError as error:
             refused.append(Diagnostic("bad-parameter", "error", f"`{bound.name}`: {error}", bound.span))
             continue
@@ -109,16 +123,17 @@ class PlanBrain:
     `PlanError` if nothing brings a function of the plan to life, or if a tick of it is not one of the world.
     """
 
-    def __init__(self, compiled: Compiled) -> None:
+    def __init__(self, compiled: Compiled, libraries: Catalogue | None = None) -> None:
         _same_tick(compiled)
         self.compiled = compiled
+        self._libraries = libraries or catalogue()
         self.trace = Trace(compiled.ways, _show)
         self.tick: Tick[Command] | None = None
         self._controller = self._new()
 
     def _new(self) -> Controller[Command]:
         try:
-            return Controller(decider(self.compiled), crew(self.compiled))
+            return Controller(decider(self.compiled), crew(self.compiled, self._libraries))
         except UnboundError as error:
             raise PlanError(
                 Diagnostic(

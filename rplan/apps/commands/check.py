@@ -17,6 +17,7 @@ from rplan.ways.coverage import review
 @click.option("--allow-holes", is_flag=True, help="A hole is a warning.")
 @click.option("--verbose", is_flag=True, help="Also notes: what never goes together, ties, outputs of one value.")
 @click.option("--json", "as_json", is_flag=True, help="For programs; has the notes too.")
+@talk.with_libraries
 def command(plan: str, strict: bool, allow_holes: bool, verbose: bool, as_json: bool) -> None:
     """Check PLAN: malformed or untyped text, goals without a rule, circles, holes, parts that are never reached.
 

@@ -34,6 +34,7 @@ FORMS = ("sexp", "json", "dot", "svg", "python", "c")
 @click.option("--strict", is_flag=True, help="A name that nothing declares is an error.")
 @click.option("--allow-holes", is_flag=True, help="A hole is a warning.")
 @click.option("--json", "as_json", is_flag=True, help="The report for programs.")
+@talk.with_libraries
 def command(plan: str, form: str | None, output: str | None, strict: bool, allow_holes: bool, as_json: bool) -> None:
     """Compile PLAN. Without --emit a report: ways, gates, depth, operations a tick."""
     compiled = talk.compiled(plan_file(plan), strict=strict, allow_holes=allow_holes, as_json=as_json)

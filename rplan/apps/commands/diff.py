@@ -18,6 +18,7 @@ DIFFERENT = 1
 @click.argument("a")
 @click.argument("b")
 @click.option("--json", "as_json", is_flag=True, help="For programs.")
+@talk.with_libraries
 def command(a: str, b: str, as_json: bool) -> None:
     """Say in which situations the plans A and B set their outputs differently.
 

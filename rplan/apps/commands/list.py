@@ -9,7 +9,6 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from behaviours.catalogue import LIBRARIES
 from behaviours.interface import Library
 from rplan.apps import talk
 from rplan.apps.files import InputError, packaged_plans
@@ -18,24 +17,25 @@ from rplan.apps.files import InputError, packaged_plans
 @click.command("list", short_help="List plans, libraries and what they offer.")
 @click.argument("library", required=False)
 @click.option("--json", "as_json", is_flag=True, help="For programs.")
+@talk.with_libraries
 def command(library: str | None, as_json: bool) -> None:
     """List the plans and libraries that come with rplan; with LIBRARY its functions and parameters."""
-    if library is not None and library not in LIBRARIES:
-        raise InputError(f"there is no library {library} (there are: {', '.join(LIBRARIES)})")
+    if library is not None and library not in talk.libraries():
+        raise InputError(f"there is no library {library} (there are: {', '.join(talk.libraries())})")
     if as_json:
         talk.result(_plain(library))
     elif library is None:
         _overview()
     else:
-        _details(LIBRARIES[library])
+        _details(talk.libraries()[library])
 
 
 def _plain(library: str | None) -> object:
     if library is not None:
-        return _plain_library(LIBRARIES[library])
+        return _plain_library(talk.libraries()[library])
     return {
         "plans": [{"plan": str(plan), "scenarios": [str(s) for s in _scenarios(plan)]} for plan in packaged_plans()],
-        "libraries": [_plain_library(one) for one in LIBRARIES.values()],
+        "libraries": [_plain_library(one) for one in talk.libraries().values()],
     }
 
 
@@ -61,7 +61,7 @@ def _overview() -> None:
         scenarios = ", ".join(scenario.name for scenario in _scenarios(plan))
         click.echo(f"  {plan.parent.name}/{plan.name}" + (f"  (scenarios: {scenarios})" if scenarios else ""))
     click.echo("Libraries (rplan list LIBRARY says more)")
-    for library in LIBRARIES.values():
+    for library in talk.libraries().values():
         click.echo(f"  {library.name:<16}{library.doc}")
 
 

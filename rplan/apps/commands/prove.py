@@ -26,6 +26,7 @@ Timed = tuple[Proof, float]
     "--trace", "trace", type=click.Path(dir_okay=False, writable=True), help="Write a trace for `rplan tick`."
 )
 @click.option("--json", "as_json", is_flag=True, help="For programs.")
+@talk.with_libraries
 def command(plan: str, names: tuple[str, ...], trace: str | None, as_json: bool) -> None:
     """Prove the properties of PLAN, all or the named ones: `defproperty`, and the goal maintained above all.
 

@@ -40,6 +40,7 @@ NOT_DONE = 1
 @click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Write a picture of the run (PNG).")
 @click.option("--allow-holes", is_flag=True, help="Drive a plan that has a hole.")
 @click.option("--json", "as_json", is_flag=True, help="The verdict for programs.")
+@talk.with_libraries
 def command(
     plan: str,
     scenario: str | None,
@@ -104,7 +105,9 @@ def _run(compiled: Compiled, path: Path, world: World, seed: int, until: float |
     limit = world.scenario.time_limit if until is None else until
     try:
         with _progress(limit) as progress:
-            return simulate(compiled, world, seed, until=until, record=record, progress=progress)
+            return simulate(
+                compiled, world, seed, until=until, record=record, progress=progress, libraries=talk.libraries()
+            )
     except PlanError as error:
         talk.wrong(error, path)
     except ScenarioError as error:

@@ -44,6 +44,7 @@ class Outcome:
 @click.command("test", short_help="Run the tests that stand in a plan.")
 @click.argument("plan")
 @click.option("--json", "as_json", is_flag=True, help="For programs.")
+@talk.with_libraries
 def command(plan: str, as_json: bool) -> None:
     """Run every `deftest` of PLAN and say which fail, where, and what was expected.
 

@@ -22,6 +22,7 @@ from rplan.runtime.trace import Trace
 @click.option("--input", "source", type=click.File("rb"), default="-", help="Default: standard input.")
 @click.option("--strict", is_flag=True, help="A name that nothing declares is an error.")
 @click.option("--allow-holes", is_flag=True, help="A hole is a warning.")
+@talk.with_libraries
 def command(plan: str, source: BinaryIO, strict: bool, allow_holes: bool) -> None:
     """Read one JSON object a line, percept → value (numbers in SI), and write what PLAN decides, one a line.
 

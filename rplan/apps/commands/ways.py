@@ -24,6 +24,7 @@ LIMIT = 200
 @click.option("--paper", is_flag=True, help="Count as Bonasso, Antonisse and Slack (1992) count.")
 @click.option("--limit", default=LIMIT, show_default=True, type=click.IntRange(1), help="List no more ways than this.")
 @click.option("--json", "as_json", is_flag=True, help="For programs.")
+@talk.with_libraries
 def command(plan: str, paper: bool, limit: int, as_json: bool) -> None:
     """List the ways of PLAN that can be taken, each with its acts, what it gives up, and a situation that takes it.
 
