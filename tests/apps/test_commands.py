@@ -96,7 +96,7 @@ def test_an_unknown_command_is_refused_with_the_known_ones() -> None:
     assert "Did you mean 'simulate'?" in slip.stderr
     other = rplan("zzz")
     assert other.exit_code == 2
-    assert "There are: check, compile, list, simulate, tick, ways." in other.stderr
+    assert f"There are: {', '.join(COMMANDS)}." in other.stderr
     assert rplan("--wrong").exit_code == 2
 
 
