@@ -1,6 +1,6 @@
 """Mutated plan texts: each is a plan or a `PlanError`, never another fault, never slow.
 
-Run by hand: `python tests/experiments/mutated_texts.py --texts 100000`. Texts are from Hypothesis' grammar of plans, with
+Run by hand: `python tests/experiments/mutated_texts.py --texts 100000`. Texts are of a grammar of plans, with
 slips in them, and from real plans with bytes changed, dropped, doubled and moved. Prints how many were plans, how many
 were not, and the slowest; exit code 1 if one raised anything else or took longer than `--most` seconds.
 """
