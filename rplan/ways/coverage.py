@@ -27,9 +27,14 @@ def find(ways: Ways, *, allow_holes: bool = False) -> tuple[Diagnostic, ...]:
 
 
 def review(ways: Ways, *, notes: bool = True) -> tuple[Diagnostic, ...]:
-    """What is surely a mistake, as warnings; notes: also what one may want to know."""
+    """What is surely a mistake, as warnings; notes: also what one may want to know.
+
+    Nothing is done in a hole, so that what is never done is told only of plans that have none.
+    """
     reach = Reach(ways)
-    found = [*check_assumptions(reach), *check_branches(reach), *check_outputs(reach)]
+    found = [*check_assumptions(reach)]
+    if not any(one.code == "hole" for one in check_holes(reach, allow_holes=True)):
+        found += [*check_branches(reach), *check_outputs(reach)]
     if notes:
         found += [*check_conflicts(reach), *check_ties(reach), *check_competences(reach), *check_percepts(reach)]
     return tuple(one for one in found if notes or one.severity != "note")
