@@ -130,7 +130,7 @@ class _Branches:
 
     def _alternatives(self, reached: list[Node]) -> Iterator[Diagnostic]:
         inside = self.ways.layout.inside
-        for number in range(1, len(inside[reached[0].number])):
+        for number in range(len(inside[reached[0].number])):
             here = [inside[node.number][number] for node in reached]
             goals = [self.ways.layout.nodes[child].goal for child in inside[reached[0].number][: number + 1]]
             texts = [print_goal(goal) for goal in goals]
@@ -141,6 +141,13 @@ class _Branches:
                     goals[-1].span, (Related("the same is here", first.span), *self._lost(here)),
                     "leave one of them out",
                 )  # fmt: skip
+            elif all(self.alone[child] for child in here) and not self._goes(reached, number):
+                yield Diagnostic(
+                    "dead", "warning",
+                    f"{label(goals[-1])} is never taken: it does not go together with what else must be, or another "
+                    "alternative gives up less",
+                    goals[-1].span, self._lost(here), "leave it out, or let what stands against it be given up",
+                )  # fmt: skip
             elif all(self.alone[child] for child in here):
                 yield Diagnostic(
                     "shadowed", "warning",
@@ -149,6 +156,11 @@ class _Branches:
                     (*also("an alternative before it", (goal.span for goal in goals[:-1])), *self._lost(here)),
                     "put it first, or leave it out",
                 )  # fmt: skip
+
+    def _goes(self, reached: list[Node], number: int) -> bool:
+        """Whether an alternative could be taken if none stood before it."""
+        offers = (self.ways.on_offer.get((node.number, number)) for node in reached)
+        return any(offer is not None and self.reach.possible((offer, True)) is not False for offer in offers)
 
     def _members(self, reached: list[Node]) -> Iterator[Diagnostic]:
         inside = self.ways.layout.inside
