@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -97,3 +98,14 @@ def test_wrong_use_ends_with_2(arguments: list[str], says: str) -> None:
 def test_plans_that_come_with_rplan_are_in_the_canonical_layout(path: Path) -> None:
     """All but those of Figure 1, which keep the line breaks of the print."""
     assert fmt("--check", str(path)).output == ""
+
+
+@pytest.mark.rule("L24")
+def test_json_says_which_texts_change(tmp_path: Path) -> None:
+    crooked, straight = tmp_path / "crooked.rplan", tmp_path / "straight.rplan"
+    crooked.write_text("(goalem\n      (do a (b)))\n")
+    straight.write_text("(goalem (do a (b)))\n")
+    result = CliRunner().invoke(cli, ["fmt", "--check", "--json", str(crooked), str(straight)])
+    assert result.exit_code == 1
+    said = [(Path(one["plan"]).name, one["changed"]) for one in json.loads(result.stdout)["plans"]]
+    assert said == [("crooked.rplan", True), ("straight.rplan", False)]

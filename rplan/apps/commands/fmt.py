@@ -18,35 +18,40 @@ from rplan.lang.source import Source
 @click.argument("plans", nargs=-1, required=True)
 @click.option("--check", is_flag=True, help="Write nothing; exit code 1 if a text is not in the canonical layout.")
 @click.option("--stdout", is_flag=True, help="Write to standard output, not to the files.")
-def command(plans: tuple[str, ...], check: bool, stdout: bool) -> None:
+@click.option("--json", "as_json", is_flag=True, help="Say for programs which texts change.")
+def command(plans: tuple[str, ...], check: bool, stdout: bool, as_json: bool) -> None:
     """Lay out every PLAN: indentation, blank lines and lines that are too long; words and comments stay.
 
     Files are written only where something changes.
     """
-    if check and stdout:
-        raise InputError("--check and --stdout exclude each other")
-    different = [path for path in map(plan_file, plans) if not _done(path, check=check, stdout=stdout)]
-    if different:
+    if stdout and (check or as_json):
+        raise InputError("--stdout goes with neither --check nor --json")
+    paths = [plan_file(plan) for plan in plans]
+    changed = {path: _changes(path, check=check, stdout=stdout) for path in paths}
+    if as_json:
+        talk.result({"plans": [{"plan": str(path), "changed": change} for path, change in changed.items()]})
+    elif not stdout:
+        for path in (path for path, change in changed.items() if change):
+            click.echo(f"{path}: {'not in the canonical layout' if check else 'laid out'}", err=True)
+    if check and any(changed.values()):
         raise SystemExit(talk.PLAN_IS_WRONG)
 
 
-def _done(path: Path, *, check: bool, stdout: bool) -> bool:
-    """Whether the text of the file is in the canonical layout, or has been brought into it."""
+def _changes(path: Path, *, check: bool, stdout: bool) -> bool:
+    """Whether the text of the file is in another layout; then it is brought into the canonical one, unless checking."""
     try:
         source = source_from_file(path)
         text = _laid_out(source)
         if stdout:
             click.echo(text, nl=False)
-        elif text != path.read_bytes().decode():
-            click.echo(f"{path}: {'not in the canonical layout' if check else 'laid out'}", err=True)
-            if check:
-                return False
+        change = text != path.read_bytes().decode()
+        if change and not check and not stdout:
             path.write_bytes(text.encode())
     except PlanError as error:
         talk.wrong(error, path)
     except OSError as error:
         unreadable(path, error)
-    return True
+    return change
 
 
 def _laid_out(source: Source) -> str:

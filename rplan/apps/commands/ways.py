@@ -69,7 +69,7 @@ def _list(compiled: Compiled, limit: int, as_json: bool) -> None:
         click.echo(f"     by {', '.join(way.rules) or 'the top goal'}")
         click.echo(f"     when {_when(way)}")
     more = f"; there may be more (--limit {limit})" if len(found) == limit else ""
-    click.echo(f"{len(found)} ways can be taken{more}")
+    click.echo(f"{len(found)} way{'' if len(found) == 1 else 's'} can be taken{more}")
 
 
 def _before(trace: Trace) -> dict[str, object]:
