@@ -85,7 +85,7 @@ def test_a_broken_plan_is_said_to_be_broken_and_left_as_it_is(tmp_path: Path) ->
     [
         ([], "Missing argument"),
         (["nowhere.rplan"], "there is no file or folder nowhere.rplan"),
-        (["--check", "--stdout", str(PLANS / "make_room")], "--check and --stdout exclude each other"),
+        (["--check", "--stdout", str(PLANS / "make_room")], "--stdout goes with neither --check nor --json"),
     ],
 )
 def test_wrong_use_ends_with_2(arguments: list[str], says: str) -> None:
