@@ -30,8 +30,12 @@ def compiled(
     as_json: bool = False,
     checks: Checks = no_checks,
     verbose: bool = False,
+    notes: int = 0,
 ) -> Compiled:
-    """The plan in a file, compiled; says what is to be said and leaves with 1 if it is wrong."""
+    """The plan in a file, compiled; says what is to be said and leaves with 1 if it is wrong.
+
+    notes: so many are shown, the others counted.
+    """
     try:
         plan = compile_file(path, strict=strict, allow_holes=allow_holes, checks=checks, libraries=libraries())
     except PlanError as error:
@@ -39,7 +43,7 @@ def compiled(
     except OSError as error:
         unreadable(path, error)
     if not as_json:
-        say(plan.diagnostics, plan.texts, every_note=verbose)
+        say(plan.diagnostics, plan.texts, every_note=verbose, notes=notes)
     return plan
 
 
@@ -79,20 +83,23 @@ def wrong(error: PlanError, path: Path, *, as_json: bool = False, verbose: bool 
     raise SystemExit(PLAN_IS_WRONG)
 
 
-def say(diagnostics: Iterable[Diagnostic], texts: Mapping[str, str], *, every_note: bool = False) -> None:
+def say(
+    diagnostics: Iterable[Diagnostic], texts: Mapping[str, str], *, every_note: bool = False, notes: int = MOST_NOTES
+) -> None:
     """Print diagnostics to stderr, errors first, and count them; many notes are cut short."""
     every = list(diagnostics)
     for severity in ("error", "warning", "note"):
         some = [d for d in every if d.severity == severity]
-        shown = some[:MOST_NOTES] if severity == "note" and not every_note else some
+        shown = some[:notes] if severity == "note" and not every_note else some
         for diagnostic in shown:
             click.echo(printable(render(diagnostic, texts)) + "\n", err=True)
-        if len(shown) < len(some):
+        if shown and len(shown) < len(some):
             click.echo(f"… and {len(some) - len(shown)} more notes (all of them with --json)\n", err=True)
     if every:
         counts = {s: sum(d.severity == s for d in every) for s in ("error", "warning", "note")}
         words = [f"{count} {name}{'' if count == 1 else 's'}" for name, count in counts.items() if count]
-        click.echo(", ".join(words), err=True)
+        more = " (`rplan check` says them)" if counts["note"] and not notes and not every_note else ""
+        click.echo(", ".join(words) + more, err=True)
 
 
 def printable(text: str) -> str:

@@ -27,7 +27,13 @@ def command(plan: str, strict: bool, allow_holes: bool, verbose: bool, as_json: 
     checks = partial(review, notes=verbose or as_json)
     path = plan_file(plan)
     compiled = talk.compiled(
-        path, strict=strict, allow_holes=allow_holes, as_json=as_json, checks=checks, verbose=verbose
+        path,
+        strict=strict,
+        allow_holes=allow_holes,
+        as_json=as_json,
+        checks=checks,
+        verbose=verbose,
+        notes=talk.MOST_NOTES,
     )
     if as_json:
         talk.result({"ok": True, "diagnostics": [talk.as_plain(d) for d in compiled.diagnostics]})

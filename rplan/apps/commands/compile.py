@@ -37,7 +37,9 @@ FORMS = ("sexp", "json", "dot", "svg", "python", "c")
 @talk.with_libraries
 def command(plan: str, form: str | None, output: str | None, strict: bool, allow_holes: bool, as_json: bool) -> None:
     """Compile PLAN. Without --emit a report: ways, gates, depth, operations a tick."""
-    compiled = talk.compiled(plan_file(plan), strict=strict, allow_holes=allow_holes, as_json=as_json)
+    compiled = talk.compiled(
+        plan_file(plan), strict=strict, allow_holes=allow_holes, as_json=as_json, notes=talk.MOST_NOTES
+    )
     if form is not None:
         _write(_emitted(compiled.circuit, form), output)
         return
