@@ -68,16 +68,23 @@ def scenario_file(given: str | None, plan: Path) -> Path:
             return path
         if path.is_dir():
             raise InputError(f"{given} is a folder; a scenario is a YAML file")
-        beside = plan.parent / (given if given.endswith((".yaml", ".yml")) else f"{given}.yaml")
-        if beside.is_file():
-            return beside
-        raise InputError(f"there is no scenario {given}")
+        name = given if given.endswith((".yaml", ".yml")) else f"{given}.yaml"
+        for folder in (plan.parent, plan.parent.parent, plans_folder()):
+            if (folder / name).is_file():
+                return folder / name
+        raise InputError(f"there is no scenario {given} (scenarios that come with rplan: {_coming_scenarios()})")
     found = sorted(plan.parent.glob("*.yaml"))
     if len(found) == 1:
         return found[0]
     if not found:
-        raise InputError(f"there is no scenario (*.yaml) beside {plan}; give one with --scenario")
+        coming = _coming_scenarios()
+        raise InputError(f"there is no scenario (*.yaml) beside {plan}; give one with --scenario, such as {coming}")
     raise InputError(f"there are several scenarios; say which with --scenario: {', '.join(s.name for s in found)}")
+
+
+def _coming_scenarios() -> str:
+    found = sorted(plans_folder().glob("*/*.yaml"))
+    return ", ".join(f"{path.parent.name}/{path.stem}" for path in found)
 
 
 def unreadable(path: Path, error: OSError) -> NoReturn:

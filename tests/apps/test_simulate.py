@@ -282,3 +282,11 @@ def test_a_recording_that_finds_no_room_on_the_disk_is_told_plainly() -> None:
     result = simulate(FIND, "--until", "1", "--record", "/dev/full")
     assert (result.exit_code, result.stdout) == (2, "")
     assert "/dev/full: the recording cannot be written" in result.stderr
+
+
+def test_a_scenario_of_another_plan_is_found_by_its_folder_and_name() -> None:
+    result = simulate("fetch_by_operators", "--scenario", "find_and_fetch/parking_lot", "--until", "1")
+    assert "fetch-by-operators in parking lot" in result.stdout
+    without = simulate("fetch_by_operators", "--until", "1")
+    assert without.exit_code == 2
+    assert "such as find_and_fetch/parking_lot, make_room/visit" in without.stderr

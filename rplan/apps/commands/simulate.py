@@ -32,7 +32,10 @@ NOT_DONE = 1
 
 @click.command("simulate", short_help="Drive a robot through a world by a plan.")
 @click.argument("plan")
-@click.option("--scenario", help="YAML file, or the name of one beside the plan. Default: the only one beside it.")
+@click.option(
+    "--scenario",
+    help="A YAML file, the name of one beside the plan, or FOLDER/NAME. Default: the only one beside the plan.",
+)
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Everything by chance follows it.")
 @click.option("--until", type=click.FloatRange(0, 1e6, min_open=True), help="Simulated seconds at most.")
 @click.option("--record", type=click.Path(dir_okay=False, path_type=Path), help="Write a recording (MCAP).")
