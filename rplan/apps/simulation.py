@@ -6,7 +6,6 @@ and for each switch what made it. Leaves alone: how it is shown; see commands/si
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -199,9 +198,8 @@ def _recorder(path: Path | None, compiled: Compiled, world: World, episode: Epis
 
 
 def _header(compiled: Compiled, world: World, episode: Episode) -> Mapping[str, object]:
-    digest = hashlib.sha256(compiled.source.text.encode()).hexdigest()
     return {
-        "plan": plan_header(compiled, digest),
+        "plan": plan_header(compiled),
         "scenario": {"name": world.scenario.name, "text": world.text},
         "seed": episode.seed,
         "versions": {name: version(name) for name in ("rplan", "numpy", "pymunk")},

@@ -6,6 +6,7 @@ Takes: libraries of behaviours, compiled plans. Gives: their signatures for the 
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
@@ -173,17 +174,24 @@ def _same_tick(compiled: Compiled) -> None:
         raise PlanError([Diagnostic("other-tick", "error", message, compiled.plan.header.span, hint=hint)])
 
 
-def plan_header(compiled: Compiled, sha256: str) -> Mapping[str, object]:
-    """What a recording says of its plan."""
+def plan_header(compiled: Compiled) -> Mapping[str, object]:
+    """What a recording says of its plan; sha256 is of its text and of those that it includes, in their order."""
     goals = compiled.goals
+    included = [source for source in compiled.sources if source.name != compiled.source.name]
+    every = "".join(source.text for source in (compiled.source, *included))
     return {
         "name": goals.name,
         "file": Path(compiled.source.name).name,
         "text": compiled.source.text,
-        "sha256": sha256,
+        "included": [{"file": Path(source.name).name, "text": source.text} for source in included],
+        "sha256": hashlib.sha256(every.encode()).hexdigest(),
         "inputs": [atom.text for atom in compiled.ways.atoms[: compiled.ways.asking]],
         "outputs": [output.name for output in goals.outputs],
-        "rules": [{"rule": r.head, "line": r.span.line, "end_line": r.span.end_line} for r in goals.rules],
+        "rules": [
+            {"rule": r.head, "line": r.span.line, "end_line": r.span.end_line}
+            for r in goals.rules
+            if r.span.file == compiled.source.name
+        ],
     }
 
 

@@ -15,6 +15,7 @@ from typing import Any
 
 from rplan.circuit.evaluate import Bits
 from rplan.goals.condition import Term
+from rplan.lang.source import Span
 from rplan.runtime.controller import Tick
 from rplan.runtime.tick import Decision, Setting
 from rplan.ways.reduce import Ways
@@ -29,6 +30,7 @@ class Trace:
 
     def __init__(self, ways: Ways, show: Show = str) -> None:
         self._ways = ways
+        self._file = ways.goals.top.span.file
         self._show = show
         self._known: dict[tuple[Bits, Bits], tuple[TakenWay, str]] = {}
 
@@ -40,7 +42,7 @@ class Trace:
         key = (decision.inputs, decision.registers)
         if key not in self._known:
             way = taken_way(self._ways, decision.inputs, decision.registers)
-            self._known[key] = way, _compact(way_json(way))
+            self._known[key] = way, _compact(way_json(way, self._file))
         return self._known[key]
 
     def line(self, number: int, decision: Decision) -> str:
@@ -50,7 +52,7 @@ class Trace:
             "hole": decision.hole,
             "outputs": texts(decision.outputs),
             "sent": texts(decision.sent),
-            "way": way_json(self.way(decision)),
+            "way": way_json(self.way(decision), self._file),
         }
         return json.dumps(line, ensure_ascii=False)
 
@@ -87,16 +89,20 @@ def texts(setting: Setting) -> dict[str, str | None]:
     return {output: None if term is None else term.text for output, term in setting.items()}
 
 
-def way_json(way: TakenWay) -> Mapping[str, object]:
-    """A way as plain JSON values, with lines of the plan's text."""
+def way_json(way: TakenWay, file: str) -> Mapping[str, object]:
+    """A way as plain JSON values; lines are those of `file`, what stands in an included file has its place as `at`."""
     return {
         "rules": list(way.rules),
         "branches": [
-            {"condition": b.condition, "value": b.value, "rule": b.rule, "line": b.span.line} for b in way.branches
+            {"condition": b.condition, "value": b.value, "rule": b.rule, **_line(b.span, file)} for b in way.branches
         ],
-        "acts": [{"output": a.output, "value": a.value, "rule": a.rule, "line": a.span.line} for a in way.acts],
-        "given_up": [{"member": g.member, "because": g.because, "line": g.span.line} for g in way.given_up],
+        "acts": [{"output": a.output, "value": a.value, "rule": a.rule, **_line(a.span, file)} for a in way.acts],
+        "given_up": [{"member": g.member, "because": g.because, **_line(g.span, file)} for g in way.given_up],
     }
+
+
+def _line(span: Span, file: str) -> Mapping[str, object]:
+    return {"line": span.line} if span.file == file else {"line": None, "at": str(span)}
 
 
 def _bits(bits: Bits) -> str:

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
+from pathlib import Path
+
 import pytest
 from properties.texts import said
 
 from behaviours.catalogue import LIBRARIES
 from behaviours.interface import STOP, Odometry, Pose, Reading
 from rplan.apps.drawing.dot import dot
-from rplan.apps.wiring import PlanBrain, compile_source, crew, plan_header, signatures
+from rplan.apps.wiring import PlanBrain, compile_file, compile_source, crew, decider, plan_header, signatures
 from rplan.circuit.cell import Cell, Op
 from rplan.circuit.circuit import Circuit, Port, Register
 from rplan.lang.diagnostic import PlanError
 from rplan.lang.source import Source
+from rplan.runtime.trace import Trace
 
 PLAN = """(use robot)
 (defoutput goal pose)
@@ -71,12 +76,13 @@ def test_a_brain_steps_notes_and_forgets_with_a_reset() -> None:
 
 
 def test_a_recording_says_of_its_plan_what_a_reader_needs() -> None:
-    header = plan_header(compile_source(Source("some/where/still.rplan", PLAN)), "abc")
+    header = plan_header(compile_source(Source("some/where/still.rplan", PLAN)))
     assert header == {
         "name": "still",
         "file": "still.rplan",
         "text": PLAN,
-        "sha256": "abc",
+        "included": [],
+        "sha256": hashlib.sha256(PLAN.encode()).hexdigest(),
         "inputs": ["(> (time-since-start) 1s)"],
         "outputs": ["goal", "action"],
         "rules": [{"rule": "(maint still)", "line": 4, "end_line": 5}],
@@ -105,3 +111,15 @@ def test_a_circuit_is_drawn_with_inputs_gates_registers_and_outputs() -> None:
         "  n2 -> n1 [style=dashed, constraint=false];",
         "}",
     ]
+
+
+def test_a_recording_knows_the_texts_that_a_plan_includes_and_lights_no_line_of_them(tmp_path: Path) -> None:
+    (tmp_path / "rules.rplan").write_text("; rules\n\n(defgoalr (ach rest) (do action (stop)))\n")
+    plan = tmp_path / "plan.rplan"
+    plan.write_text('(include "rules.rplan")\n(use robot)\n(defoutput action command)\n(goalem (ach rest))\n')
+    compiled = compile_file(plan)
+    header = plan_header(compiled)
+    assert header["included"] == [{"file": "rules.rplan", "text": (tmp_path / "rules.rplan").read_text()}]
+    assert header["rules"] == []
+    way = json.loads(Trace(compiled.ways).line(0, decider(compiled).tick({})))["way"]
+    assert [(act["line"], Path(act["at"]).name) for act in way["acts"]] == [(None, "rules.rplan:3:22")]

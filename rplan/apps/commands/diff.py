@@ -32,14 +32,14 @@ def command(a: str, b: str, as_json: bool) -> None:
     except ClashError as error:
         raise InputError(str(error)) from None
     if as_json:
-        talk.result(_plain(found))
+        talk.result(_plain(found, first, second))
     else:
         _say(found, first)
     if not found.equal:
         raise SystemExit(DIFFERENT)
 
 
-def _plain(found: Differences) -> dict[str, object]:
+def _plain(found: Differences, first: Compiled, second: Compiled) -> dict[str, object]:
     return {
         "equal": found.equal,
         "decided": not found.undecided,
@@ -49,8 +49,8 @@ def _plain(found: Differences) -> dict[str, object]:
                 "output": one.output,
                 "when": dict(one.cube),
                 "trace": [dict(tick) for tick in one.trace],
-                "a": {"value": one.first.value, "way": way_json(one.first.way)},
-                "b": {"value": one.second.value, "way": way_json(one.second.way)},
+                "a": {"value": one.first.value, "way": way_json(one.first.way, first.source.name)},
+                "b": {"value": one.second.value, "way": way_json(one.second.way, second.source.name)},
             }
             for one in found.found
         ],

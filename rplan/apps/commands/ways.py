@@ -59,7 +59,10 @@ def _holes(compiled: Compiled) -> tuple[int, int] | None:
 def _list(compiled: Compiled, limit: int, as_json: bool) -> None:
     found = list(_taken(compiled, limit))
     if as_json:
-        ways = [dict(way_json(way)) | {"when": dict(trace[-1])} | _before(trace) for trace, way in found]
+        ways = [
+            dict(way_json(way, compiled.source.name)) | {"when": dict(trace[-1])} | _before(trace)
+            for trace, way in found
+        ]
         talk.result({"plan": compiled.goals.name, "ways": ways, "cut_short": len(found) == limit})
         return
     for number, (_, way) in enumerate(found, start=1):
