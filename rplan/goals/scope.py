@@ -22,7 +22,7 @@ Asks = Literal["nothing", "outputs", "percepts"]
 
 DEEPEST = 1_000
 """Rules inside rules and named conditions inside named conditions, at most (L17)."""
-LONGEST = 10_000
+LONGEST = 1_000
 """Letters of the canonical text of a goal or of a named condition with its arguments, at most."""
 
 
