@@ -40,7 +40,17 @@ class Polygon:
     vertices: tuple[Vec2, ...]
 
 
-Outline = Circle | Polygon
+@dataclass(frozen=True, slots=True)
+class Rings:
+    """Closed rings of corners [m] in the body frame, the solid on the left: outer ones counter-clockwise, holes clockwise.
+
+    For what never moves, such as the walls of a map; need not be convex.
+    """
+
+    rings: tuple[tuple[Vec2, ...], ...]
+
+
+Outline = Circle | Polygon | Rings
 
 
 def box(length: float, width: float) -> Polygon:
@@ -56,6 +66,8 @@ def reach(outline: Outline) -> float:
             return radius
         case Polygon(vertices):
             return max(math.hypot(x, y) for x, y in vertices)
+        case Rings(rings):
+            return max(math.hypot(x, y) for ring in rings for x, y in ring)
 
 
 @dataclass(frozen=True, slots=True)
