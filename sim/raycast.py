@@ -85,6 +85,21 @@ def ray(start: Vec2, angle: float, height: float = 0.0) -> Rays:
     return Rays(*(np.array([number]) for number in (start[0], start[1], angle, height)))
 
 
+class Fan:
+    """Rays from one origin, made once for a sensor.
+
+    bearings: (n,) [rad] in the frame of the sensor, rising, over a full turn at most; evenly spaced or not. Raises
+    ValueError where they are not.
+    """
+
+    def __init__(self, bearings: Floats) -> None:
+        self.bearings = np.array(bearings, dtype=float)
+        rising = self.bearings.ndim == 1 and bool((np.diff(self.bearings) > 0).all())
+        if not rising or not self.bearings.size or not np.ptp(self.bearings) <= math.tau + MARGIN:
+            raise ValueError("bearings of a fan must be finite and rise, over a full turn at most")
+        self.bearings.setflags(write=False)
+
+
 @dataclass(frozen=True, slots=True)
 class Crossings:
     """Pairs of a ray and a thing on it, in the order of the things: distances [m] of the way in and the way out."""
@@ -192,3 +207,14 @@ def cast(rays: Rays, max_range: float, scene: Scene) -> tuple[Floats, Ints]:
     first = np.nonzero(met.enter == ranges[met.ray])[0][::-1]
     things[met.ray[first]] = met.thing[first]
     return ranges, things
+
+
+def sweep(fan: Fan, pose: Pose, height: float, max_range: float, scene: Scene) -> Floats:
+    """Distance [m] to the first thing along each ray of a fan at a pose [m, rad; world], `height` [m] above ground."""
+    return sweep_things(fan, pose, height, max_range, scene)[0]
+
+
+def sweep_things(fan: Fan, pose: Pose, height: float, max_range: float, scene: Scene) -> tuple[Floats, Ints]:
+    """As `sweep`, and the index of the thing that each ray meets first (-1 if none)."""
+    x, y, high = (np.full(fan.bearings.shape, number) for number in (pose.x, pose.y, height))
+    return cast(Rays(x, y, fan.bearings + pose.theta, high), max_range, scene)
