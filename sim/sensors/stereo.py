@@ -13,49 +13,57 @@ A fixation takes 9 s, so that a search of 32 fixations with its head movements l
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
+from numpy.random import Generator
 
 from behaviours.interface import HeadState, Pose, StereoReading
 from sim.raycast import Scene, crossings, ray
+from sim.sensors.build import StereoBuild as StereoBuild
+from sim.sensors.truth import Truth
 
 FARTHEST = 30.0  # [m]
 LEVEL = 1e-6  # [rad] of tilt below which the ray never comes down
 
 
-@dataclass(frozen=True, slots=True)
-class StereoBuild:
-    """period [s] of a fixation; camera_height [m]; linear, quadratic: the sd is linear * z + quadratic * z^2."""
+class VergingCameras:
+    """The verging cameras of one robot."""
 
-    period: float = 9.0
-    camera_height: float = 1.2
-    linear: float = 0.003
-    quadratic: float = 0.001
+    def __init__(self, build: StereoBuild, chance: Generator) -> None:
+        self._build, self._chance = build, chance
+        self.first = (StereoReading(0.0, False, 0.0, 0.0, math.nan, build.camera_height),)
+
+    def measure(self, truth: Truth) -> tuple[StereoReading]:
+        """One fixation."""
+        return (self._fixation(truth.time, truth.head, truth.pose, truth.scene()),)
+
+    def _fixation(self, stamp: float, head: HeadState, pose: Pose, scene: Scene) -> StereoReading:
+        height = self._build.camera_height
+        slant = self._noisy(slant_range(height, head, pose, scene))
+        return StereoReading(stamp, True, head.pan, head.tilt, slant, height)
+
+    def _noisy(self, slant: float) -> float:
+        sd = self._build.linear * slant + self._build.quadratic * slant * slant
+        return slant + sd * float(self._chance.standard_normal())
 
 
-class Stereo:
+class Stereo(VergingCameras):
     """The verging cameras. `sense` is called once a tick."""
 
-    def __init__(self, build: StereoBuild, chance: np.random.Generator) -> None:
-        self._build, self._chance = build, chance
-        self._reading = StereoReading(0.0, False, 0.0, 0.0, math.nan, build.camera_height)
-        self._used = 0.0
+    def __init__(self, build: StereoBuild, chance: Generator) -> None:
+        super().__init__(build, chance)
+        self._reading, self._used = self.first[0], 0.0
 
     def sense(self, stamp: float, head: HeadState, still_for: float, pose: Pose, scene: Scene) -> StereoReading:
         """still_for [s]: how long head and base have not moved."""
         since = min(still_for, stamp - self._used)
         if head.settled and since >= self._build.period - 1e-6:
             self._used = stamp
-            slant = self._noisy(slant_range(self._build.camera_height, head, pose, scene))
-            self._reading = replace(self._reading, stamp=stamp, fresh=True, pan=head.pan, tilt=head.tilt, range=slant)
+            self._reading = self._fixation(stamp, head, pose, scene)
         elif self._reading.fresh:
             self._reading = replace(self._reading, fresh=False)
         return self._reading
-
-    def _noisy(self, slant: float) -> float:
-        sd = self._build.linear * slant + self._build.quadratic * slant * slant
-        return slant + sd * float(self._chance.standard_normal())
 
 
 def slant_range(camera_height: float, head: HeadState, pose: Pose, scene: Scene) -> float:
