@@ -17,7 +17,7 @@ from sim import snapshot
 from sim.judge import Judge, Verdict
 from sim.scenarios.scenario import Scenario
 from sim.snapshot import Json
-from sim.world import TICK, World
+from sim.world import PERIOD, World
 
 
 class Brain(Protocol):
@@ -45,11 +45,11 @@ class Observer(Protocol):
 
 
 class Episode:
-    """One run of a scenario with a seed. Raises ScenarioError where the seed finds no layout."""
+    """One run of a scenario with a seed; period [s] of a tick. Raises ScenarioError where the seed finds no layout."""
 
-    def __init__(self, scenario: Scenario, seed: int) -> None:
+    def __init__(self, scenario: Scenario, seed: int, period: float = PERIOD) -> None:
         self.scenario, self.seed = scenario, seed
-        self.world = World(scenario, seed)
+        self.world = World(scenario, seed, period)
         self.judge = Judge(self.world)
         self.command: Command = STOP
         self.note = "null"
@@ -70,14 +70,14 @@ class Episode:
         self.judge.observe()
 
     def run(self, brain: Brain, until_s: float | None = None, observer: Observer | None = None) -> Verdict:
-        """Tick until the object is fetched or the time [s] is over (None: the scenario's limit).
+        """Tick until the task is done, or lost, or the time [s] is over (None: the scenario's limit).
 
         What the brain raises is raised again, once the robot has been stopped.
         """
         until = self.scenario.time_limit if until_s is None else until_s
         brain.reset()
         try:
-            while not self.judge.done and self.time < until - TICK / 2:
+            while not self.judge.over and self.time < until - self.world.period / 2:
                 self.tick(brain, observer)
         finally:
             self._stop()

@@ -7,7 +7,7 @@ Leaves alone: motion (`robot.py`) and sensors (`sim/sensors/build.py`).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from sim.raycast import Circle, Outline, reach
 
@@ -76,8 +76,8 @@ DriveBuild = Synchro | Differential | SkidSteer | Ackermann
 class Build:
     """A robot's body: hull round the origin of the robot frame, how it drives, mass [kg], height [m]."""
 
-    hull: Outline = Circle(0.35)
-    drive: DriveBuild = Synchro()
+    hull: Outline = field(default_factory=lambda: Circle(0.35))
+    drive: DriveBuild = field(default_factory=Synchro)
     mass: float = 120.0
     height: float = 1.2
 

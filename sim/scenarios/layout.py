@@ -11,15 +11,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from itertools import count
+from dataclasses import dataclass, replace
+from itertools import count, pairwise
 
 from numpy.random import Generator
 
 from behaviours.interface import Pose, Vec2, wrap
 from sim.frames import distance_to_segment
-from sim.raycast import Circle, Outline, Polygon, reach
-from sim.scenarios.scenario import SCATTERED, Amount, Between, KeepClear, Place, Scatter, Scenario, ThingSpec
+from sim.raycast import Circle, Outline, Polygon, Rings, reach
+from sim.scenarios.scenario import (
+    SCATTERED,
+    Amount,
+    Between,
+    Change,
+    DonorSpec,
+    KeepClear,
+    Place,
+    Scatter,
+    Scenario,
+    ThingSpec,
+)
 from sim.scenarios.schema import Problem, ScenarioError
 from sim.things.thing import Placed, Travel
 
@@ -30,7 +41,7 @@ Strip = tuple[Vec2, Vec2, float]
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """Where everything stands at the start; the first of the things is the donor."""
+    """Where everything stands at the start; where the scenario has a donor, it is the first of the things."""
 
     start: Pose
     things: tuple[Placed, ...]
@@ -39,7 +50,7 @@ class Layout:
 def lay_out(scenario: Scenario, chance: Generator) -> Layout:
     """Draw what the scenario leaves open. Raises ScenarioError where scattered things find no room."""
     start = Pose(*scenario.robot.start, wrap(_drawn(scenario.robot.heading, chance)))
-    things = [_donor(scenario)]
+    things = [] if scenario.donor is None else [_donor(scenario.donor)]
     for spec in scenario.things:
         there, heading = chance.random() < spec.present, _drawn(spec.heading, chance)
         if there:
@@ -47,15 +58,27 @@ def lay_out(scenario: Scenario, chance: Generator) -> Layout:
     for scatter in scenario.scatter:
         things += _scattered(scatter, scenario, things, chance)
     _check_start(scenario, things)
-    return Layout(start, tuple(things))
+    changing = {event.what.thing for event in scenario.events if not isinstance(event.what, Change)}
+    return Layout(start, tuple(replace(thing, changes=thing.id in changing) for thing in things))
 
 
 def _check_start(scenario: Scenario, things: list[Placed]) -> None:
     for thing in things:
-        if distance(scenario.robot.start, thing.outline, thing.pose) < scenario.robot.build.radius:
+        if distance(scenario.robot.start, thing.outline, thing.pose) < _inner(scenario.robot.build.hull):
             raise ScenarioError(
                 [Problem(scenario.name, 1, 1, "robot.start", f"the robot stands in {thing.id!r} there")]
             )
+
+
+def _inner(hull: Outline) -> float:
+    """Radius [m] of the circle round the origin that the hull encloses."""
+    match hull:
+        case Circle(radius):
+            return radius
+        case Polygon(vertices):
+            return min(distance_to_segment((0.0, 0.0), a, b) for a, b in pairwise((*vertices, vertices[0])))
+        case Rings():
+            return 0.0
 
 
 def _drawn(amount: Amount, chance: Generator) -> float:
@@ -66,8 +89,7 @@ def _drawn(amount: Amount, chance: Generator) -> float:
             return amount
 
 
-def _donor(scenario: Scenario) -> Placed:
-    spec = scenario.donor
+def _donor(spec: DonorSpec) -> Placed:
     return Placed(DONOR, DONOR, Circle(spec.radius), Pose(*spec.at, 0.0), spec.height, motion=spec.move)
 
 
@@ -113,9 +135,13 @@ def _strips(keep_clear: tuple[KeepClear, ...], scenario: Scenario) -> Iterator[S
 
 
 def _point(place: Place, scenario: Scenario) -> Vec2:
-    if isinstance(place, str):
-        return scenario.robot.start if place == "robot" else scenario.donor.at
-    return place
+    if not isinstance(place, str):
+        return place
+    if place == "robot":
+        return scenario.robot.start
+    if scenario.donor is None:
+        raise ScenarioError([Problem(scenario.name, 1, 1, "scatter", "keeps clear of a donor, and there is none")])
+    return scenario.donor.at
 
 
 def _lanes(things: list[Placed]) -> Iterator[Strip]:
@@ -135,18 +161,25 @@ def _half_width(outline: Outline) -> float:
             return radius
         case Polygon(vertices):
             return max(abs(y) for _, y in vertices)
+        case Rings():
+            return reach(outline)
 
 
 def distance(point: Vec2, outline: Outline, pose: Pose) -> float:
-    """Distance [m] of the point from the outline at a pose; within a polygon 0, within a circle less."""
+    """Distance [m] of the point from the outline at a pose; within a polygon or rings 0, within a circle less."""
     match outline:
         case Circle(radius):
             return math.dist(point, (pose.x, pose.y)) - radius
         case Polygon(vertices):
-            c, s = math.cos(pose.theta), math.sin(pose.theta)
-            dx, dy = point[0] - pose.x, point[1] - pose.y
-            inner = c * dx + s * dy, c * dy - s * dx
-            pairs = list(zip(vertices, (*vertices[1:], vertices[0]), strict=True))
-            if all((b[0] - a[0]) * (inner[1] - a[1]) >= (b[1] - a[1]) * (inner[0] - a[0]) for a, b in pairs):
-                return 0.0
-            return min(distance_to_segment(inner, a, b) for a, b in pairs)
+            return _distance_to_rings(point, (vertices,), pose)
+        case Rings(rings):
+            return _distance_to_rings(point, rings, pose)
+
+
+def _distance_to_rings(point: Vec2, rings: tuple[tuple[Vec2, ...], ...], pose: Pose) -> float:
+    c, s = math.cos(pose.theta), math.sin(pose.theta)
+    dx, dy = point[0] - pose.x, point[1] - pose.y
+    x, y = c * dx + s * dy, c * dy - s * dx
+    pairs = [pair for ring in rings for pair in pairwise((*ring, ring[0]))]
+    inside = sum((a[1] > y) != (b[1] > y) and x < a[0] + (y - a[1]) * (b[0] - a[0]) / (b[1] - a[1]) for a, b in pairs)
+    return 0.0 if inside % 2 else min(distance_to_segment((x, y), a, b) for a, b in pairs)

@@ -25,6 +25,11 @@ class Roller:
         self._velocity = (0.0, 0.0)
         self._done = False
 
+    @property
+    def rolling(self) -> bool:
+        """Whether it is on its way."""
+        return self._until < math.inf and not self._done
+
     def prepare(self, around: Surroundings) -> None:
         """Begin, go on, or come to rest."""
         if self._done:

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import pymunk
 
 from behaviours.interface import Pose, Vec2, wrap
-from sim.raycast import Circle, Outline, Polygon, reach
+from sim.raycast import Circle, Outline, Polygon, Rings, reach
 
 ROBOT, OTHER = 1, 2  # collision types
 FRICTION = 0.2  # between hulls; nothing climbs or sticks in the plane
@@ -91,12 +92,49 @@ class Shift:
     speed: float = 0.3
 
 
-Motion = Travel | Roll | Shift
+@dataclass(frozen=True, slots=True)
+class Keyframe:
+    """Where to be [m] at a moment [s]."""
+
+    time: float
+    x: float
+    y: float
+
+
+@dataclass(frozen=True, slots=True)
+class Keyframes:
+    """From place to place at set times, straight and evenly in between, and from the last back to the first at once."""
+
+    frames: tuple[Keyframe, ...]
+
+    def at(self, time: float) -> Vec2:
+        """The place [m] at a moment [s]."""
+        time = self._phase(time)
+        for before, after in pairwise(self.frames):
+            if time <= after.time:
+                share = max(0.0, (time - before.time) / (after.time - before.time))
+                return before.x + share * (after.x - before.x), before.y + share * (after.y - before.y)
+        return self.frames[-1].x, self.frames[-1].y
+
+    def begins_anew(self, before: float, after: float) -> bool:
+        """Whether the track begins anew between two moments [s], at another place than where it ends."""
+        ends = self.frames[0], self.frames[-1]
+        return self._phase(after) < self._phase(before) and (ends[0].x, ends[0].y) != (ends[1].x, ends[1].y)
+
+    def _phase(self, time: float) -> float:
+        first, last = self.frames[0].time, self.frames[-1].time
+        return first + (time - first) % (last - first) if time > last else time
+
+
+Motion = Travel | Roll | Shift | Keyframes
 
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """A thing where a scenario puts it. mass [kg]: 0 for what cannot be pushed; height [m] above the ground."""
+    """A thing where a scenario puts it. mass [kg]: 0 for what cannot be pushed; height [m] above the ground.
+
+    changes: something will happen to it at a set time.
+    """
 
     id: str
     kind: str
@@ -105,11 +143,12 @@ class Placed:
     height: float
     mass: float = 0.0
     motion: Motion | None = None
+    changes: bool = False
 
     @property
     def moves(self) -> bool:
         """Whether it can ever be elsewhere."""
-        return self.mass > 0 or self.motion is not None
+        return self.mass > 0 or self.motion is not None or self.changes
 
 
 class Thing:
@@ -119,9 +158,10 @@ class Thing:
         self.index, self.placed, self.reach = index, placed, reach(placed.outline)
         self.body, self._space = _body(placed), space
         self.body.position, self.body.angle = (placed.pose.x, placed.pose.y), placed.pose.theta
-        self.shape = _shape(placed.outline, self.body)
-        self.shape.friction, self.shape.collision_type = FRICTION, OTHER
-        space.add(self.body, self.shape)
+        self.shapes = _shapes(placed.outline, self.body)
+        for shape in self.shapes:
+            shape.friction, shape.collision_type = FRICTION, OTHER
+        space.add(self.body, *self.shapes)
         self.present = True
 
     @property
@@ -144,17 +184,35 @@ class Thing:
         self._space.reindex_shapes_for_body(self.body)
         self.present = present
 
+    def glide(self, dt: float) -> None:
+        """Where its velocity takes it in dt [s], if nothing is in the way."""
+        body = self.body
+        (x, y), (vx, vy) = body.position, body.velocity
+        body.position, body.angle = (x + vx * dt, y + vy * dt), body.angle + body.angular_velocity * dt
+        self._space.reindex_shapes_for_body(body)
+
 
 def _body(placed: Placed) -> pymunk.Body:
     if placed.mass > 0:
-        return pymunk.Body(placed.mass, pymunk.moment_for_circle(placed.mass, 0.0, reach(placed.outline)))
+        return pymunk.Body(placed.mass, _moment(placed.mass, placed.outline))
     kinematic = placed.motion is not None
     return pymunk.Body(body_type=pymunk.Body.KINEMATIC if kinematic else pymunk.Body.STATIC)
 
 
-def _shape(outline: Outline, body: pymunk.Body) -> pymunk.Shape:
+def _moment(mass: float, outline: Outline) -> float:
+    match outline:
+        case Polygon(vertices):
+            return float(pymunk.moment_for_poly(mass, vertices))
+        case _:
+            return float(pymunk.moment_for_circle(mass, 0.0, reach(outline)))
+
+
+def _shapes(outline: Outline, body: pymunk.Body) -> tuple[pymunk.Shape, ...]:
     match outline:
         case Circle(radius):
-            return pymunk.Circle(body, radius)
+            return (pymunk.Circle(body, radius),)
         case Polygon(vertices):
-            return pymunk.Poly(body, vertices)
+            return (pymunk.Poly(body, vertices),)
+        case Rings(rings):
+            edges = [pair for ring in rings for pair in pairwise((*ring, ring[0]))]
+            return tuple(pymunk.Segment(body, a, b, 0.0) for a, b in edges)

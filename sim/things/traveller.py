@@ -10,7 +10,7 @@ import math
 
 from behaviours.interface import wrap
 from sim.frames import approach
-from sim.raycast import Circle, Polygon
+from sim.raycast import Circle, Polygon, Rings
 from sim.things.surroundings import Disc, Surroundings, goes_off
 from sim.things.thing import At, Thing, Travel
 
@@ -110,3 +110,5 @@ def _half_sizes(thing: Thing) -> tuple[float, float]:
             return radius, radius
         case Polygon(vertices):
             return max(x for x, _ in vertices), max(y for _, y in vertices)
+        case Rings():
+            return thing.reach, thing.reach
