@@ -241,7 +241,7 @@ class Reading:
     currents: Currents | None = None
     bumper: Bumper | None = None
     flippers: FlipperState | None = None
-    others: Mapping[str, Sensed] = NO_OTHERS
+    others: Mapping[str, Sensed] = field(default_factory=lambda: NO_OTHERS)
 
 
 # --- what is commanded ----------------------------------------------------------------------------
