@@ -10,26 +10,36 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from behaviours.interface import Command, Floats, Pose, Reading
 from sim.raycast import Circle, Outline, Polygon, Rings
+from sim.things.ground import Slope
 from sim.things.thing import Placed, Thing
-from sim.world import TICK, World
+from sim.world import World
 
 Json = dict[str, object]
 
 
 def header(world: World) -> Json:
-    """What does not change: period, bounds, robot, home, donor, things that stand and things that move."""
+    """What does not change: period, bounds, robot, home, donor, goal, slopes, things that stand and things that move.
+
+    A part that the scenario does not have is None or empty.
+    """
+    scenario, build = world.scenario, world.robot.build
+    standing = [thing for thing in world.things if not _in_snapshots(world, thing)]
     return {
-        "scenario": world.scenario.name,
+        "scenario": scenario.name,
         "seed": world.seed,
-        "period": TICK,
-        "bounds": list(world.scenario.bounds),
-        "robot": {"radius": world.robot.build.radius},
+        "period": world.period,
+        "bounds": list(scenario.bounds),
+        "robot": {"radius": build.radius, "shape": _outline(build.hull), "height": build.height},
         "home": _pose(world.start),
-        "donor": _described(world.donor.placed) | {"reach": world.hand_over.reach},
-        "things": [_described(thing.placed) for thing in world.things if not _in_snapshots(thing)],
-        "movers": [_described(thing.placed) for thing in world.things if _in_snapshots(thing)],
+        "donor": _donor(world),
+        "goal": _goal(world),
+        "slopes": [_slope(slope) for slope in scenario.ground.slopes],
+        "things": [_described(thing.placed) for thing in standing],
+        "movers": [_described(thing.placed) for thing in world.things if _in_snapshots(world, thing)],
     }
 
 
@@ -41,7 +51,7 @@ def snapshot(world: World, stage: str, command: Command) -> Json:
         "stage": stage,
         "robot": _pose(world.robot.pose),
         "odometry": _pose(reading.odometry.pose),
-        "movers": {t.placed.id: _pose(t.pose) for t in world.things if _in_snapshots(t) and t.present},
+        "movers": {t.placed.id: _pose(t.pose) for t in world.things if t.present and _in_snapshots(world, t)},
         "contacts": [{"thing": touch.thing, "driven_into": touch.driven_into} for touch in world.touches],
         "head": [_angle(head.pan), _angle(head.tilt)],
         "command": _command(command),
@@ -49,8 +59,24 @@ def snapshot(world: World, stage: str, command: Command) -> Json:
     } | _sensed(reading)
 
 
-def _in_snapshots(thing: Thing) -> bool:
-    return thing.placed.moves or thing.index == 0
+def _in_snapshots(world: World, thing: Thing) -> bool:
+    """Whether it may be elsewhere later, or gone."""
+    return thing.placed.moves or thing is world.donor
+
+
+def _donor(world: World) -> Json | None:
+    if world.donor is None or world.hand_over is None:
+        return None
+    return _described(world.donor.placed) | {"reach": world.hand_over.reach}
+
+
+def _goal(world: World) -> Json | None:
+    goal = world.scenario.goal
+    return None if goal is None else {"at": list(goal.at), "within": goal.within}
+
+
+def _slope(slope: Slope) -> Json:
+    return {"region": list(slope.region), "rise": _angle(slope.rise), "uphill": _angle(slope.uphill)}
 
 
 def _length(value: float) -> float | None:
@@ -92,14 +118,17 @@ def _command(command: Command) -> Json:
         parts["drive"] = [_length(drive.speed), _angle(drive.turn_rate)]
     if head is not None:
         parts["head"] = [_angle(head.pan), _angle(head.tilt)]
+    if command.flippers is not None:
+        parts["flippers"] = command.flippers.deployed
     return parts
 
 
 def _sensed(reading: Reading) -> Json:
     """Only what was measured at this tick."""
     parts: Json = {}
-    if reading.sonar and reading.skirt and reading.sonar.fresh:
-        parts["sonar"] = [*_rounded(reading.sonar.ranges), *_rounded(reading.skirt.ranges)]
+    if reading.sonar and reading.sonar.fresh:
+        skirt = [] if reading.skirt is None else _rounded(reading.skirt.ranges)
+        parts["sonar"] = [*_rounded(reading.sonar.ranges), *skirt]
     if reading.ir and reading.ir.fresh:
         ir = reading.ir
         parts["ir"] = {
@@ -115,4 +144,5 @@ def _sensed(reading: Reading) -> Json:
 
 
 def _rounded(ranges: Floats) -> list[float]:
-    return [round(value, 3) for value in ranges.tolist()]
+    listed: list[float] = np.round(ranges, 3).tolist()
+    return listed

@@ -125,11 +125,11 @@ def test_a_process_that_is_killed_leaves_the_closed_chunks(tmp_path: Path) -> No
     assert recording.cut_short
     assert recording.header == HEADER
     ticks = list(recording.ticks)
-    assert 150 < len(ticks) < 200
+    assert len(ticks) >= 198, "no more than 0.2 s of simulated time is lost"
     assert [tick["tick"] for tick in ticks] == list(range(len(ticks)))
 
 
-@pytest.mark.parametrize("kept", [0.9, 0.5, 0.2])
+@pytest.mark.parametrize("kept", [0.7, 0.5, 0.2])
 def test_a_file_that_was_cut_short_gives_its_beginning(tmp_path: Path, kept: float) -> None:
     path = record(tmp_path / "run.mcap", 300)
     recording = read(cut(path, int(path.stat().st_size * kept)))
