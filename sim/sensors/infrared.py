@@ -15,16 +15,14 @@ donor. Wind rocks the beacon: a jitter of its bearing, and gusts.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 from numpy.random import Generator
 
-from behaviours.interface import HeadState, IrReading, Pose, Vec2, wrap
+from behaviours.interface import IrReading, Pose, Vec2, wrap
 from sim.frames import FOOT, bearing
 from sim.raycast import Scene, cast, crossings, ray
-from sim.sensors.build import InfraredBuild as InfraredBuild
+from sim.sensors.build import InfraredBuild
 from sim.sensors.truth import Truth
-from sim.sensors.weather import Weather as Weather
 
 SIGNAL, EDGE, HEARD = 3.2, 25 * FOOT, 3.0
 HALF_FIELD = math.radians(30)
@@ -43,46 +41,19 @@ class BeaconReader:
 
     def measure(self, truth: Truth) -> tuple[IrReading]:
         """One fixation."""
-        return (
-            self._fixation(
-                truth.time, truth.head.pan, truth.pose, truth.beacon, truth.donor, truth.weather, truth.scene()
-            ),
-        )
-
-    def _fixation(
-        self, stamp: float, pan: float, pose: Pose, beacon: Vec2 | None, donor: int, weather: Weather, scene: Scene
-    ) -> IrReading:
-        noise, jitter, offset_noise, gust = self._chance.standard_normal(4)
-        gusty = self._chance.random() < weather.gusts
+        stamp, pan, beacon = truth.time, truth.head.pan, truth.beacon
+        noise, jitter, offset_noise, gust = self._chance.standard_normal(4).tolist()
+        gusty = float(self._chance.random()) < truth.weather.gusts
         if beacon is None:
-            return IrReading(stamp, True, pan, False, math.nan, max(0.0, self._build.sd * noise))
-        offset = wrap(bearing(pose, beacon) - pan + weather.jitter * jitter + weather.gust * gust * gusty)
-        visible = abs(offset) < HALF_FIELD and _in_sight(pose, beacon, donor, scene)
-        signal = _signal(pose, beacon, offset) / _background(pose, beacon, donor, weather, scene) if visible else 0.0
+            return (IrReading(stamp, True, pan, False, math.nan, max(0.0, self._build.sd * noise)),)
+        rocked = truth.weather.jitter * jitter + truth.weather.gust * gust * gusty
+        offset = wrap(bearing(truth.pose, beacon) - pan + rocked)
+        visible = abs(offset) < HALF_FIELD and _in_sight(truth.pose, beacon, truth.donor, truth.scene())
+        signal = _signal(truth.pose, beacon, offset) / _background(truth, beacon) if visible else 0.0
         strength = max(0.0, signal + self._build.sd * noise)
-        detected = bool(visible and strength > HEARD)
+        detected = visible and strength > HEARD
         measured = offset + self._build.offset_sd * offset_noise if detected else math.nan
-        return IrReading(stamp, True, pan, detected, measured, strength)
-
-
-class InfraredReader(BeaconReader):
-    """The reader. `sense` is called once a tick."""
-
-    def __init__(self, build: InfraredBuild, weather: Weather, chance: Generator) -> None:
-        super().__init__(build, chance)
-        self._weather, self._reading, self._used = weather, NEVER, 0.0
-
-    def sense(
-        self, stamp: float, head: HeadState, still_for: float, pose: Pose, beacon: Vec2, donor: int, scene: Scene
-    ) -> IrReading:
-        """still_for [s]: how long the head has looked there; donor: index of the thing that carries the beacon."""
-        since = min(still_for, stamp - self._used)
-        if head.settled and since >= self._build.period - 1e-6:
-            self._used = stamp
-            self._reading = self._fixation(stamp, head.pan, pose, beacon, donor, self._weather, scene)
-        elif self._reading.fresh:
-            self._reading = replace(self._reading, fresh=False)
-        return self._reading
+        return (IrReading(stamp, True, pan, detected, measured, strength),)
 
 
 def _signal(pose: Pose, beacon: Vec2, offset: float) -> float:
@@ -90,12 +61,13 @@ def _signal(pose: Pose, beacon: Vec2, offset: float) -> float:
     return SIGNAL * (EDGE / distance) ** 2 * math.cos(offset) ** 2
 
 
-def _background(pose: Pose, beacon: Vec2, donor: int, weather: Weather, scene: Scene) -> float:
+def _background(truth: Truth, beacon: Vec2) -> float:
     """Noise, relative to a day without sun."""
-    if weather.sun is None or abs(bearing(Pose(pose.x, pose.y, weather.sun), beacon)) > SUN_NEAR:
+    pose, sun = truth.pose, truth.weather.sun
+    if sun is None or abs(bearing(Pose(pose.x, pose.y, sun), beacon)) > SUN_NEAR:
         return 1.0
-    behind = crossings(ray(beacon, weather.sun, SHADE_HEIGHT), SHADE_WITHIN, scene).thing
-    return 1.0 if (behind != donor).any() else SUN_NOISE
+    behind = crossings(ray(beacon, sun, SHADE_HEIGHT), SHADE_WITHIN, truth.scene()).thing
+    return 1.0 if (behind != truth.donor).any() else SUN_NOISE
 
 
 def _in_sight(pose: Pose, beacon: Vec2, donor: int, scene: Scene) -> bool:

@@ -16,8 +16,8 @@ import math
 
 from numpy.random import Generator
 
-from behaviours.interface import Drive, Odometry, Pose, wrap
-from sim.sensors.build import OdometryBuild as OdometryBuild
+from behaviours.interface import Odometry, Pose, wrap
+from sim.sensors.build import OdometryBuild
 from sim.sensors.truth import Truth
 
 STILL = 1e-6  # [rad] of turning in a tick that counts as none
@@ -30,53 +30,32 @@ class WheelOdometry:
     def __init__(self, build: OdometryBuild, start: Pose, chance: Generator) -> None:
         self._build, self._chance, self._true = build, chance, start
         self._scale = 1.0 + build.scale_sd * chance.standard_normal()
-        self.x = self.y = self.theta = 0.0
-        self.speed = self.turn_rate = 0.0
+        self._x = self._y = self._theta = 0.0
+        self._speed = self._turn_rate = 0.0
         self.first = (Odometry(Pose(0.0, 0.0, 0.0), 0.0, 0.0, 0.0, False),)
 
     def update(self, truth: Truth) -> None:
         """Add up one tick."""
-        self.add(truth.pose, truth.dt, truth.wheels)
+        true, dt, old = truth.pose, truth.dt, self._true
+        turn = wrap(true.theta - old.theta)
+        middle = old.theta + turn / 2
+        way = (true.x - old.x) * math.cos(middle) + (true.y - old.y) * math.sin(middle)
+        turn = _said(turn, truth.wheels.turn_rate * dt)
+        way = self._scale * _said(way, truth.wheels.speed * dt)
+        if abs(turn) > STILL:
+            turn += self._build.turn_sd * math.sqrt(dt) * self._chance.standard_normal()
+        heading = self._theta + turn / 2
+        self._x += way * math.cos(heading)
+        self._y += way * math.sin(heading)
+        self._theta, self._true = wrap(self._theta + turn), true
+        self._speed, self._turn_rate = way / dt, turn / dt
 
     def measure(self, truth: Truth) -> tuple[Odometry]:
         """What has been added up so far."""
-        pose = Pose(self.x, self.y, self.theta)
-        return (Odometry(pose, self.speed, self.turn_rate, truth.time),)
-
-    def add(self, true: Pose, dt: float, wheels: Drive | None) -> None:
-        """One tick of length dt [s] that ended at this pose; wheels: None where they did what the hull did."""
-        old, turn = self._true, wrap(true.theta - self._true.theta)
-        middle = old.theta + turn / 2
-        way = (true.x - old.x) * math.cos(middle) + (true.y - old.y) * math.sin(middle)
-        if wheels is not None:
-            turn, way = _said(turn, wheels.turn_rate * dt), _said(way, wheels.speed * dt)
-        way *= self._scale
-        if abs(turn) > STILL:
-            turn += self._build.turn_sd * math.sqrt(dt) * self._chance.standard_normal()
-        heading = self.theta + turn / 2
-        self.x += way * math.cos(heading)
-        self.y += way * math.sin(heading)
-        self.theta, self._true = wrap(self.theta + turn), true
-        self.speed, self.turn_rate = way / dt, turn / dt
+        pose = Pose(self._x, self._y, self._theta)
+        return (Odometry(pose, self._speed, self._turn_rate, truth.time),)
 
 
 def _said(hull: float, wheels: float) -> float:
     """What the wheels did in a tick; what the hull did where that is the same, free of the rounding of a rate."""
     return hull if abs(wheels - hull) <= SAME else wheels
-
-
-class DeadReckoning:
-    """Adds up what the hull did. `update` is called after each tick."""
-
-    def __init__(self, build: OdometryBuild, start: Pose, chance: Generator) -> None:
-        self._wheels = WheelOdometry(build, start, chance)
-
-    def update(self, true: Pose, dt: float) -> None:
-        """Take the true pose at the end of a tick of length dt [s]."""
-        self._wheels.add(true, dt, None)
-
-    @property
-    def reading(self) -> Odometry:
-        """What has been added up so far."""
-        wheels = self._wheels
-        return Odometry(Pose(wheels.x, wheels.y, wheels.theta), wheels.speed, wheels.turn_rate)

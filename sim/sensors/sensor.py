@@ -109,9 +109,10 @@ class Sensor:
         """Put what was measured on its way, and take what arrives now."""
         if measured is not None:
             self._under_way.append((truth.tick + math.ceil(self._latency / truth.dt - ROUNDING), measured))
-        if self._under_way and self._under_way[0][0] <= truth.tick:
-            return self._under_way.popleft()[1]
-        return None
+        arrived = None
+        while self._under_way and self._under_way[0][0] <= truth.tick:
+            arrived = self._under_way.popleft()[1]
+        return arrived
 
     def _faulty(self, time: float, measured: Measured) -> Measured | None:
         """What the faults of this time leave of it, in their order; None where it is lost."""
@@ -148,5 +149,7 @@ class Sensor:
 
 def mounted(p_WR: Pose, mount: Mount) -> Pose:
     """Where in the world a sensor is that sits there on a robot."""
+    if mount.x == mount.y == mount.theta == 0.0:
+        return p_WR
     c, s = math.cos(p_WR.theta), math.sin(p_WR.theta)
     return Pose(p_WR.x + c * mount.x - s * mount.y, p_WR.y + s * mount.x + c * mount.y, p_WR.theta + mount.theta)

@@ -14,14 +14,13 @@ square of the range stops growing.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 from numpy.random import Generator
 
 from behaviours.interface import Floats, Pose, Ranges
 from sim.raycast import Rays, Scene, cast
-from sim.sensors.build import SonarBuild as SonarBuild
+from sim.sensors.build import SonarBuild
 from sim.sensors.truth import Truth
 
 WAIST, SKIRT = 24, 6
@@ -31,7 +30,6 @@ HALF_CONE = math.radians(9)
 RAYS_PER_CONE = 5
 NEAREST, FARTHEST = 0.05, 5.0  # [m]
 PERIOD = 0.3  # [s]
-SWEEP_TICKS = 3
 
 
 def _ring(count: int) -> Floats:
@@ -84,21 +82,3 @@ class SonarRings:
         noise, luck = self._chance.standard_normal(ranges.shape), self._chance.random(ranges.shape)
         heard = (ranges < FARTHEST) & (luck >= self._build.dropout)
         return np.where(heard, np.clip(ranges * (1 + self._build.sd * noise), NEAREST, FARTHEST), FARTHEST)
-
-
-class Sonar(SonarRings):
-    """Both rings. `sense` is called once a tick and gives (waist, skirt)."""
-
-    def __init__(self, build: SonarBuild, hull_radius: float, chance: Generator) -> None:
-        super().__init__(build, hull_radius, HEIGHT, chance)
-        self._latest = self.first
-
-    def sense(self, tick: int, stamp: float, pose: Pose, scene: Scene) -> tuple[Ranges, Ranges]:
-        """The rings at this tick; the first tick has a sweep."""
-        if tick % SWEEP_TICKS == 0:
-            ranges = self._noisy(self.sweep(pose, scene))
-            ranges.setflags(write=False)
-            self._latest = self._rings(stamp, True, ranges)
-        elif self._latest[0].fresh:
-            self._latest = replace(self._latest[0], fresh=False), replace(self._latest[1], fresh=False)
-        return self._latest

@@ -13,14 +13,13 @@ A fixation takes 9 s, so that a search of 32 fixations with its head movements l
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 from numpy.random import Generator
 
 from behaviours.interface import HeadState, Pose, StereoReading
 from sim.raycast import Scene, crossings, ray
-from sim.sensors.build import StereoBuild as StereoBuild
+from sim.sensors.build import StereoBuild
 from sim.sensors.truth import Truth
 
 FARTHEST = 30.0  # [m]
@@ -36,34 +35,13 @@ class VergingCameras:
 
     def measure(self, truth: Truth) -> tuple[StereoReading]:
         """One fixation."""
-        return (self._fixation(truth.time, truth.head, truth.pose, truth.scene()),)
-
-    def _fixation(self, stamp: float, head: HeadState, pose: Pose, scene: Scene) -> StereoReading:
-        height = self._build.camera_height
-        slant = self._noisy(slant_range(height, head, pose, scene))
-        return StereoReading(stamp, True, head.pan, head.tilt, slant, height)
+        head, height = truth.head, self._build.camera_height
+        slant = self._noisy(slant_range(height, head, truth.pose, truth.scene()))
+        return (StereoReading(truth.time, True, head.pan, head.tilt, slant, height),)
 
     def _noisy(self, slant: float) -> float:
         sd = self._build.linear * slant + self._build.quadratic * slant * slant
         return slant + sd * float(self._chance.standard_normal())
-
-
-class Stereo(VergingCameras):
-    """The verging cameras. `sense` is called once a tick."""
-
-    def __init__(self, build: StereoBuild, chance: Generator) -> None:
-        super().__init__(build, chance)
-        self._reading, self._used = self.first[0], 0.0
-
-    def sense(self, stamp: float, head: HeadState, still_for: float, pose: Pose, scene: Scene) -> StereoReading:
-        """still_for [s]: how long head and base have not moved."""
-        since = min(still_for, stamp - self._used)
-        if head.settled and since >= self._build.period - 1e-6:
-            self._used = stamp
-            self._reading = self._fixation(stamp, head, pose, scene)
-        elif self._reading.fresh:
-            self._reading = replace(self._reading, fresh=False)
-        return self._reading
 
 
 def slant_range(camera_height: float, head: HeadState, pose: Pose, scene: Scene) -> float:

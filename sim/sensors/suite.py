@@ -79,8 +79,7 @@ class Suite:
         """What the robot senses at the end of this tick; once a tick."""
         said: dict[str, Any] = {}
         for sensor, fields in self._sensors:
-            for field, reading in zip(fields, sensor.sense(truth) or (), strict=False):
-                said[field] = reading
+            said.update(zip(fields, sensor.sense(truth) or (), strict=False))
         head, flippers = truth.head, truth.flippers
         return Reading(
             truth.time,
