@@ -53,19 +53,18 @@ class Flippers:
     """They take half a second down or up; `lifts` once they have been down for a second of pushing."""
 
     def __init__(self) -> None:
-        self._angle, self._wanted, self._pushed_for, self._stamp = 0.0, False, 0.0, 0.0
+        self._angle, self._wanted, self._pushed_for = 0.0, False, 0.0
 
     def command(self, wanted: Wanted | None) -> None:
         """Where to go from now on; None: as before."""
         if wanted is not None:
             self._wanted = wanted.deployed
 
-    def move(self, dt: float, pushing: bool, climbing: bool, stamp: float) -> None:
+    def move(self, dt: float, pushing: bool, climbing: bool) -> None:
         """One tick; a hull that is climbing stays lifted until it is over."""
         pushed = self.deployed and pushing
         self._pushed_for = self._pushed_for + dt if pushed else self._pushed_for if climbing else 0.0
         self._angle = approach(self._angle, DOWN if self._wanted else 0.0, DOWN / MOVES_IN * dt)
-        self._stamp = stamp
 
     @property
     def deployed(self) -> bool:
@@ -80,4 +79,4 @@ class Flippers:
     @property
     def state(self) -> FlipperState:
         """As the robot senses it."""
-        return FlipperState(self._angle, self.deployed, self._stamp)
+        return FlipperState(self._angle, self.deployed)

@@ -35,7 +35,7 @@ class Robot:
 
     speed [m/s] along x, turn_rate [rad/s], acceleration [m/s^2, robot frame], wheels: what wheels or tracks made of
     the tick, slip included; aside [m/s]: what they made to the left of it, in the middle of a steered robot; blocked:
-    share of the wanted way that contacts took; asked [m/s, world]: the velocity before contacts had their say.
+    share of the wanted way that contacts took; load and flippers carry no stamp; asked [m/s, world]: the velocity before contacts had their say.
     """
 
     def __init__(self, space: pymunk.Space, start: Pose, build: Build, ground: Ground) -> None:
@@ -155,8 +155,8 @@ class Robot:
 
     # --- the end of a tick ------------------------------------------------------------------------
 
-    def settle(self, dt: float, climbing: bool = False, stamp: float = 0.0) -> None:
-        """After the sub-steps of a tick of dt [s]; climbing: the hull lies over a curb; stamp [s]: the time now."""
+    def settle(self, dt: float, climbing: bool = False) -> None:
+        """After the sub-steps of a tick of dt [s]; climbing: the hull lies over a curb."""
         if not self._mirrored:
             self._mirror()
         old, (c, s) = self.pose, self._along
@@ -165,7 +165,7 @@ class Robot:
         self.standing = math.hypot(self._vx, self._vy) < SLOW
         turn = wrap(self.pose.theta - old.theta)
         self._read_motion(old, old.theta + turn / 2, turn, dt)
-        self._read_load(dt, climbing, stamp)
+        self._read_load(dt, climbing)
         self._tilt()
 
     def _read_motion(self, old: Pose, middle: float, turn: float, dt: float) -> None:
@@ -175,15 +175,15 @@ class Robot:
         ax, ay = (self._vx - self._velocity[0]) / dt, (self._vy - self._velocity[1]) / dt
         self.acceleration, self._velocity = (ax * c + ay * s, ay * c - ax * s), (self._vx, self._vy)
 
-    def _read_load(self, dt: float, climbing: bool, stamp: float) -> None:
+    def _read_load(self, dt: float, climbing: bool) -> None:
         drive = self.build.drive
         meant = wheels(drive, self._meant_way / dt, self._meant_turn / dt)
         self._meant_way = self._meant_turn = 0.0
         self.blocked = lost(meant.speed, self.wheels.speed)
         track = drive.track if isinstance(drive, Differential | SkidSteer) else 0.0
         left, right = currents(meant, self.wheels, track, isinstance(drive, SkidSteer))
-        self.load = Currents(stamp, True, CLIMBING, CLIMBING) if climbing else Currents(stamp, True, left, right)
-        self._flippers.move(dt, self.blocked > PUSHING, climbing, stamp)
+        self.load = Currents(0.0, True, CLIMBING, CLIMBING) if climbing else Currents(0.0, True, left, right)
+        self._flippers.move(dt, self.blocked > PUSHING, climbing)
         self.flippers = self._flippers.state
 
     def _tilt(self) -> None:
