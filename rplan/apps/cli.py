@@ -19,6 +19,7 @@ COMMANDS = {
     "list": "List plans, libraries and what they offer.",
     "prove": "Prove what a plan promises, or show how it breaks it.",
     "simulate": "Drive a robot through a world by a plan.",
+    "sweep": "Run many episodes of a plan and keep a row of each.",
     "test": "Run the tests that stand in a plan.",
     "tick": "Run a plan alone: percepts in, outputs out, one JSON object a line.",
     "ways": "List the ways of a plan; --paper counts them as the paper does.",
