@@ -62,10 +62,18 @@ class Episode:
 
     def tick(self, brain: Brain, observer: Observer | None = None) -> None:
         """Sense, think, show, step."""
-        self.command = brain.step(self.world.sense())
+        self.act(brain.step(self.world.sense()))
         if observer is not None:
             self.note = brain.note()
             observer.observe(self)
+        self.advance()
+
+    def act(self, command: Command) -> None:
+        """What the robot is told in this tick."""
+        self.command = command
+
+    def advance(self) -> None:
+        """The tick passes."""
         self.world.step(self.command)
         self.judge.observe()
 

@@ -14,6 +14,7 @@ from typing import Literal
 from sim.world import Touch, World
 
 Stage = Literal["to the donor", "hand-over", "return", "to the goal", "touched", "no task", "done"]
+Task = Literal["fetch", "reach", "none"]
 HOME, AT_START = 1.0, 0.3  # [m] from the start: what counts as back, and as not yet gone
 STILL = 1.0  # [s] to stand at home
 ONE_CONTACT = 1.0  # [s] within which touches of one thing are one contact
@@ -50,6 +51,7 @@ class Verdict:
     reason: in words, why it is not done; empty when it is. A run without a task is done when its time is over.
     """
 
+    task: Task
     done: bool
     reason: str
     stage: Stage
@@ -106,6 +108,13 @@ class Judge:
     def over(self) -> bool:
         """Whether nothing more can come of it."""
         return self.done or self._failed
+
+    @property
+    def task(self) -> Task:
+        """What the scenario asks for."""
+        if self._world.scenario.goal is not None:
+            return "reach"
+        return "none" if self._world.donor is None else "fetch"
 
     @property
     def stage(self) -> Stage:
@@ -170,6 +179,7 @@ class Judge:
         done = self.done or (self.stage == "no task" and not stopped)
         why = stopped or (f"a contact at {time:.1f} s" if self._failed else f"out of time at {time:.0f} s")
         return Verdict(
+            task=self.task,
             done=done,
             reason="" if done else f"{why} {PHRASES[self.stage]}",
             stage=self.stage,

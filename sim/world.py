@@ -39,6 +39,7 @@ from sim.things.thing import OTHER, ROBOT, Keyframes, Roll, Shift, Thing, Travel
 from sim.things.traveller import Traveller
 
 PERIOD = 0.1  # [s] of a tick, unless a plan asks for another
+SHORTEST, LONGEST = 0.001, 1.0  # [s] that a tick may take
 SUBSTEP = 0.02  # [s] at most
 DAMPING = 0.01  # share of its speed that a pushed thing has left after a second
 SLOP = 0.0005  # [m] that touching hulls may overlap

@@ -50,6 +50,7 @@ from sim.scenarios.schema import (
     Wrong,
     by_kind,
     choice,
+    did_you_mean,
     flag,
     listed,
     mapping_or,
@@ -673,27 +674,37 @@ def _scenario(ground: tuple[Slope, ...], **rest: Any) -> Scenario:
     scenario = Scenario(ground=Ground(ground), **rest)
     if scenario.donor is not None and scenario.goal is not None:
         raise ValueError("a scenario has either a donor or a goal")
-    _check_names(scenario)
     return scenario
 
 
-def _check_names(scenario: Scenario) -> None:
-    """Events and faults speak of what is there."""
+def _whole(report: Report, node: yaml.Node, path: str) -> Scenario | Wrong:
+    """A scenario whose events and faults speak of what is there."""
+    scenario = keys_of_scenario(report, node, path)
+    if isinstance(scenario, str):
+        return scenario
     sensors = [sensor.name for sensor in scenario.robot.sensors]
-    things = [thing.id for thing in scenario.things if thing.id] + (["donor"] if scenario.donor else [])
     for index, fault in enumerate(scenario.faults):
         if fault.sensor not in sensors:
-            raise ValueError(f"faults[{index}]: the robot has no sensor {fault.sensor!r}; it has {', '.join(sensors)}")
+            message = f"the robot has no sensor {fault.sensor!r}; {did_you_mean(fault.sensor, sensors)}"
+            report.wrong(_part(node, "faults", index), f"faults[{index}].sensor", message)
+    things = [thing.id for thing in scenario.things if thing.id] + (["donor"] if scenario.donor else [])
     for index, event in enumerate(scenario.events):
         match event.what:
             case Vanish(thing=name) | Put(thing=name) if name not in things:
-                known = ", ".join(things) or "none with an id"
-                raise ValueError(f"events[{index}]: there is no thing {name!r}; there is {known}")
+                hint = did_you_mean(name, things) if things else "none has an id"
+                report.wrong(_part(node, "events", index), f"events[{index}]", f"there is no thing {name!r}; {hint}")
             case _:
                 pass
+    return scenario
 
 
-SCENARIO: Spec[Scenario] = record(
+def _part(node: yaml.Node, key: str, index: int) -> yaml.Node:
+    """The item of a list under a key of a mapping; both are there."""
+    part: yaml.Node = next(value for name, value in node.value if name.value == key).value[index]
+    return part
+
+
+keys_of_scenario: Spec[Scenario] = record(
     _scenario,
     name=Key(word),
     bounds=Key(region, doc="what is shown"),
@@ -710,6 +721,7 @@ SCENARIO: Spec[Scenario] = record(
     source=Key(word, ""),
     left_out=Key(listed(word), ()),
 )
+SCENARIO: Spec[Scenario] = Spec(_whole, keys_of_scenario.schema)
 
 
 def schema() -> Json:

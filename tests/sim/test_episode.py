@@ -11,7 +11,7 @@ import pytest
 from behaviours.interface import STOP, Command, Drive, Head, Reading
 from sim.episode import Episode, run
 from sim.judge import Judge
-from sim.scenarios.scenario import load
+from sim.scenarios.format import load
 from sim.world import World
 
 LOT = load(Path(__file__).parents[2] / "plans" / "find_and_fetch" / "parking_lot.yaml")

@@ -13,7 +13,7 @@ import hashlib, json
 from pathlib import Path
 from behaviours.interface import Command, Drive
 from sim.episode import Episode
-from sim.scenarios.scenario import load
+from sim.scenarios.format import load
 
 episode, sha = Episode(load(Path("plans/find_and_fetch/parking_lot.yaml")), 11), hashlib.sha256()
 for _ in range(300):
