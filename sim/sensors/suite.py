@@ -54,8 +54,8 @@ class Suite:
         self, installed: tuple[Installed, ...], faults: tuple[Fault, ...], build: Build, start: Pose, seed: int
     ) -> None:
         """Raises ValueError where two sensors have one name, or a fault is of none or cannot be."""
+        _check(installed, faults)
         carried = _carried(installed)
-        _check(carried, faults)
         instruments = [instrument(sensor, build, start, seed) for sensor in carried]
         self._updates = [made.update for made in instruments if made.update is not None]
         self._sensors: list[tuple[Sensor, tuple[str, ...]]] = []
@@ -103,13 +103,13 @@ def _carried(installed: tuple[Installed, ...]) -> tuple[Installed, ...]:
     return installed if odometry else (PERFECT_ODOMETRY, *installed)
 
 
-def _check(carried: tuple[Installed, ...], faults: tuple[Fault, ...]) -> None:
-    names = [sensor.name for sensor in carried]
+def _check(installed: tuple[Installed, ...], faults: tuple[Fault, ...]) -> None:
+    names = [sensor.name for sensor in installed]
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f"two sensors are called '{name}'")
     for fault in faults:
-        if wrong := wrong_fault(fault, carried):
+        if wrong := wrong_fault(fault, installed):
             raise ValueError(wrong)
 
 
