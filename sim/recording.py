@@ -26,7 +26,7 @@ from foxglove import Channel, Context, open_mcap
 from foxglove.mcap import MCAPCompression, MCAPWriteOptions
 from mcap.exceptions import McapError
 from mcap.records import Channel as ChannelRecord
-from mcap.records import Message
+from mcap.records import McapRecord, Message
 from mcap.stream_reader import CRCValidationError, StreamReader
 from zstandard import ZstdError
 
@@ -219,20 +219,26 @@ class _Ticks:
         return (json.loads(data) for data in _messages(self.path, "/tick", self.cut_short))
 
 
+def records(path: Path) -> Iterator[McapRecord]:
+    """Every record of an MCAP file, in order; raises one of `BROKEN` where the file cannot be read further."""
+    with path.open("rb") as stream:
+        yield from StreamReader(stream, validate_crcs=True, record_size_limit=path.stat().st_size).records
+
+
 def _messages(path: Path, topic: str, cut_short: bool) -> Iterator[bytes]:
     """The messages of a topic in file order; where the file was cut short it ends quietly."""
-    with path.open("rb") as stream:
-        channels: dict[int, str] = {}
-        try:
-            for record in StreamReader(stream, validate_crcs=True, record_size_limit=path.stat().st_size).records:
-                match record:
-                    case ChannelRecord():
-                        channels[record.id] = record.topic
-                    case Message() if channels.get(record.channel_id) == topic:
-                        yield record.data
-        except BROKEN as fault:
-            if not cut_short:
-                raise RecordingError(f"{path} is damaged ({fault}): record the run again") from fault
+    channels: dict[int, str] = {}
+    try:
+        for record in records(path):
+            match record:
+                case ChannelRecord():
+                    channels[record.id] = record.topic
+                case Message() if channels.get(record.channel_id) == topic:
+                    yield record.data
+    except BROKEN as fault:
+        if not cut_short:
+            advice = "record the run again, or save its beginning by `rplan repair`"
+            raise RecordingError(f"{path} is damaged ({fault}): {advice}") from fault
 
 
 def _is_cut_short(path: Path) -> bool:
