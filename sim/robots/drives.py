@@ -109,17 +109,15 @@ def unwound(now: Motion, goal: Motion, speed_share: float, turn_share: float) ->
 
     Otherwise a robot that has been told to stop would push on for as long as its wheels would have turned in the air.
     """
-    speed = now.speed * speed_share if _brakes(now.speed, goal.speed) else now.speed
-    turn_rate = now.turn_rate * turn_share if _brakes(now.turn_rate, goal.turn_rate) else now.turn_rate
-    return now._replace(speed=_not_past(speed, goal.speed), turn_rate=_not_past(turn_rate, goal.turn_rate))
+    speed = _slowed(now.speed, goal.speed, speed_share)
+    return now._replace(speed=speed, turn_rate=_slowed(now.turn_rate, goal.turn_rate, turn_share))
 
 
-def _brakes(now: float, goal: float) -> bool:
-    return now * goal <= 0 or abs(goal) < abs(now)
-
-
-def _not_past(value: float, goal: float) -> float:
-    return goal if value * goal > 0 and abs(value) < abs(goal) else value
+def _slowed(now: float, goal: float, share: float) -> float:
+    if now * goal > 0 and abs(goal) >= abs(now):
+        return now
+    made = now * share
+    return goal if made * goal > 0 and abs(made) < abs(goal) else made
 
 
 # --- what the hull makes of it --------------------------------------------------------------------

@@ -97,8 +97,8 @@ def _ravon() -> Model:
 def _xrhex() -> Model:
     """X-RHex with a Hokuyo UBG-04LX-F01 on its back, taken for a unicycle.
 
-    Lidar after Bayer 2011 and the sensor's data sheet: 240 degrees, a scan each 28 ms, less than 4 m, 1 % of the range
-    and 1 cm at least; 667 beams. Speed: 0.32 m/s for each unit of its setspeed, 1.5 of them.
+    Lidar after Bayer 2011 and the sensor's data sheet: 240 degrees, a scan each 28 ms, less than 4 m, 1 % of the range;
+    667 beams. Speed: 0.32 m/s for each unit of its setspeed, 1.5 of them.
     """
     drive = Differential(max_speed=0.8, max_turn_rate=1.5, acceleration=2.0, turn_acceleration=8.0, track=0.3)
     lidar = LidarBuild(math.radians(240), beams=667, min_range=0.02, max_range=4.0, sd=0.0, relative_sd=0.01)
@@ -119,7 +119,7 @@ def _jackal() -> Model:
     drive = Differential(max_speed=2.0, max_turn_rate=4.0, acceleration=3.0, turn_acceleration=8.0, track=0.376)
     lidar = LidarBuild(math.radians(270), beams=720, min_range=0.1, max_range=30.0, sd=0.01)
     sensors = (
-        Installed("lidar", lidar, Mount(x=0.12, height=0.33), period=0.02),
+        Installed("lidar", lidar, Mount(x=0.12, height=0.33), period=0.025),
         Installed("odometry", OdometryBuild(scale_sd=0.01, turn_sd=0.005)),
         Installed("imu", ImuBuild()),
         Installed("bumper", BumperBuild()),

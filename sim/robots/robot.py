@@ -35,7 +35,8 @@ class Robot:
 
     speed [m/s] along x, turn_rate [rad/s], acceleration [m/s^2, robot frame], wheels: what wheels or tracks made of
     the tick, slip included; aside [m/s]: what they made to the left of it, in the middle of a steered robot; blocked:
-    share of the wanted way that contacts took; load and flippers carry no stamp; asked [m/s, world]: the velocity before contacts had their say.
+    share of the wanted way that contacts took; load and flippers carry no stamp; asked [m/s, world]: the velocity
+    before contacts had their say.
     """
 
     def __init__(self, space: pymunk.Space, start: Pose, build: Build, ground: Ground) -> None:
