@@ -26,7 +26,7 @@ from rplan.goals.expand import expand
 from rplan.lang.diagnostic import PlanError
 from rplan.lang.source import Source
 from rplan.lang.suggest import close
-from sim.scenarios.scenario import loads
+from sim.scenarios.format import loads
 from sim.scenarios.schema import Problem, ScenarioError
 
 MOST = 1_000_000
@@ -169,8 +169,10 @@ def _plan_choices(name: str, parts: list[str], compiled: Compiled, libraries: Ca
 
 def _setting(library: str, parameter: str, text: str, libraries: Catalogue) -> float | bool | str:
     """The value (SI) that `(use LIBRARY :PARAMETER TEXT)` gives."""
-    if not WORD.fullmatch(parameter) or not WORD.fullmatch(text):
-        raise GridError([f"`{text}` is no value of a parameter" if WORD.fullmatch(parameter) else "no such parameter"])
+    if not WORD.fullmatch(parameter):
+        raise GridError([f"`{library}.{parameter}` is no name of a parameter"])
+    if not WORD.fullmatch(text):
+        raise GridError([f"`{text}` is no value of a parameter"])
     source = Source("--param", f"(plan checked) (use {library} :{parameter} {text}) (goalem (do anything))")
     try:
         plan = load(source)
@@ -231,7 +233,8 @@ def _put(node: yaml.Node | None, steps: Sequence[str | int], value: yaml.Node) -
         case None, str():
             return _mapping([], step, rest, value)
         case _:
-            raise GridError([f"there is no {step!r} in what is not a {'list' if isinstance(step, int) else 'mapping'}"])
+            where = f"[{step}] in what is no list" if isinstance(step, int) else f"{step} in what is no mapping"
+            raise GridError([f"there is no {where}"])
 
 
 def _mapping(

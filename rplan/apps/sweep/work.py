@@ -25,7 +25,7 @@ from rplan.driver import Compiled
 from rplan.goals.goal import BoundLibrary
 from rplan.lang.source import Source
 from sim.judge import Verdict
-from sim.scenarios.scenario import loads
+from sim.scenarios.format import loads
 
 Value = bool | int | float | str
 Row = dict[str, Value | None]
