@@ -232,6 +232,15 @@ def test_uphill_it_loses_speed():
     assert down.speed == pytest.approx(-0.4)
 
 
+def test_it_loses_speed_where_the_slope_begins():
+    slope = Ground((Slope((1.0, -9, 9, 9), 0.2, 0.0),))
+    robot = let(placed(BUILDS["tracks"], ground=slope), Drive(0.4, 0.0), 2)
+    assert robot.speed == pytest.approx(0.4)
+    let(robot, Drive(0.4, 0.0), 2)
+    assert robot.speed == pytest.approx(0.36)
+    assert robot.blocked == 0.0
+
+
 def test_put_brings_it_to_rest_elsewhere():
     robot = let(placed(BUILDS["disc"]), Drive(0.4, 0.5), 3)
     robot.put(Pose(5.0, 6.0, 1.0))
@@ -295,6 +304,19 @@ def test_a_fast_robot_does_not_pass_through_a_thin_wall():
     for _ in range(10):
         tick(robot, Command(Drive(20.0, 0.0)))
     assert robot.pose.x == pytest.approx(1.98, abs=0.005)
+
+
+def test_what_moves_away_as_fast_does_not_hinder():
+    robot = placed(BUILDS["box"])
+    runner = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    shape = pymunk.Circle(runner, 0.1)
+    robot.body.space.add(runner, shape)
+    let(robot, Drive(2.0, 0.0), 2)
+    runner.position, runner.velocity = (robot.pose.x + 0.254 + 0.101, 0.0), (2.0, 0.0)
+    robot.body.space.reindex_shapes_for_body(robot.body)
+    for _ in range(10):
+        tick(robot, Command(Drive(2.0, 0.0)))
+        assert robot.blocked == 0.0
 
 
 def test_looking_ahead_heeds_no_sensor_shape():
