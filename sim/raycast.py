@@ -20,20 +20,23 @@ which are taken where there is a C compiler, give the same bits.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from behaviours.interface import Floats, Pose, Vec2
+from sim.raycast_c import Loops, loops, order_of
 
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 SLACK = 1e-7  # [rad] by which intervals of angles are wider than need be
 MARGIN = 1e-6  # [m] by which areas are wider than need be
 TINY = 1e-200
-CELLS = 8  # the width of a cell is the reach of its rays over this
+CELLS = 8  # the width of a cell is the reach of its rays over this; a wide cell has so many across
+MANY = 1000  # still discs and edges from this number on are sorted out by wide cells first
 KEPT = 64  # areas that are remembered; the oldest goes first
 FEW = 64  # moving things up to this number are not sorted out by distance
 
@@ -133,6 +136,16 @@ class Fan:
         self.cos, self.sin = np.cos(self.bearings), np.sin(self.bearings)
         self.turned = np.concatenate([self.bearings - self.first, self.bearings - self.first + math.tau])
 
+        self._struct: tuple[Any, Any] | None = None
+
+    def struct(self, compiled: Loops) -> Any:
+        """The fan as the compiled loops want it."""
+        if self._struct is None:
+            order, before = order_of(self.cos, self.sin)
+            arrays = {"cos": self.cos, "sin": self.sin, "order": order, "before": before}
+            self._struct = compiled.struct("fan", {"count": self.bearings.size}, arrays)
+        return self._struct[0]
+
     def directions(self, theta: float) -> tuple[Floats, Floats]:
         """Unit vectors of the rays when the sensor looks along `theta` [rad, world]."""
         c, s = math.cos(theta), math.sin(theta)
@@ -159,9 +172,16 @@ class Scene:
     """The outlines of things at their present poses, laid out for casting.
 
     x, y [m], radius [m, that encloses], height [m]: of each thing. edges: (4, e) [m, world], edge_thing: (e,).
+    loops: gives the compiled loops, or None to do without; no result depends on it.
     """
 
-    def __init__(self, outlines: Sequence[Outline], poses: Sequence[Pose], heights: Sequence[float]) -> None:
+    def __init__(
+        self,
+        outlines: Sequence[Outline],
+        poses: Sequence[Pose],
+        heights: Sequence[float],
+        loops: Callable[[], Loops | None] = loops,
+    ) -> None:
         own = [_edges(outline) for outline in outlines]
         counts = [edges.shape[1] for edges in own]
         self.x = np.array([pose.x for pose in poses], dtype=float)
@@ -177,7 +197,15 @@ class Scene:
         self._theta = [pose.theta for pose in poses]
         self._moving = np.zeros(len(own), dtype=bool)
         self.version = 0
+        self.compiled = loops()
+        self.struct = None if self.compiled is None else self.compiled.struct("scene", {}, self._arrays())
         self._settle()
+
+    def _arrays(self) -> dict[str, NDArray[Any]]:
+        """What the compiled loops look into; written in place ever after."""
+        edges = dict(zip(("ax", "ay", "bx", "by"), self.edges, strict=True))
+        things = {"x": self.x, "y": self.y, "radius": self.radius, "height": self.height}
+        return things | edges | {"edge_thing": self.edge_thing}
 
     def place(self, index: int, pose: Pose) -> None:
         """Put thing `index` at a new pose."""
@@ -199,19 +227,23 @@ class Scene:
         self.moving_edges = np.flatnonzero(self._moving[self.edge_thing])
         self.still_discs = np.flatnonzero(~self._moving & self.round)
         self.still_edges = np.flatnonzero(~self._moving[self.edge_thing])
-        self._areas: dict[tuple[int, int, float, float, float], _Area] = {}
+        self._many = self.still_discs.size + self.still_edges.size > MANY
+        self._areas: dict[_Cell, _Area] = {}
 
     def area(self, x: float, y: float, max_range: float, height: float, spread: float = 0.0) -> _Area:
         """What rays can meet that start within `spread` [m] of a place and run higher than `height` [m]."""
         size = max((max_range + spread) / CELLS, MARGIN)
-        key = math.floor(x / size), math.floor(y / size), max_range, height, spread
-        area = self._areas.get(key)
+        return self._area(
+            _Cell(math.floor(x / size), math.floor(y / size), size, max_range, height, spread), self._many
+        )
+
+    def _area(self, cell: _Cell, within_wide: bool) -> _Area:
+        area = self._areas.get(cell)
         if area is None:
+            wide = self._area(cell.around(), False) if within_wide else None
             if len(self._areas) >= KEPT:
                 del self._areas[next(iter(self._areas))]
-            margin = size * math.sqrt(0.5) + spread + MARGIN
-            area = _Area(self, (key[0] + 0.5) * size, (key[1] + 0.5) * size, margin, max_range, height)
-            self._areas[key] = area
+            area = self._areas[cell] = _Area(self, cell, wide)
         return area
 
 
@@ -221,26 +253,67 @@ def _moved(edges: Floats, x: Floats | float, y: Floats | float, c: Floats | floa
     return np.array([x + (c * ax - s * ay), y + (s * ax + c * ay), x + (c * bx - s * by), y + (s * bx + c * by)])
 
 
-class _Area:
-    """What rays can meet that start within `margin` [m] of a place: indices of discs (things) and of edges.
+class _Cell(NamedTuple):
+    """A square of the plane, column and row of `size` [m], and the rays that start in it, or within `spread` of it."""
 
-    Also whether that place lies inside a thing, and the edges that stand between it and a start.
+    column: int
+    row: int
+    size: float
+    max_range: float
+    height: float
+    spread: float
+
+    def around(self) -> _Cell:
+        """The wider cell that holds this one."""
+        return self._replace(column=self.column // CELLS, row=self.row // CELLS, size=self.size * CELLS)
+
+
+class _Area:
+    """What rays from a cell can meet: indices of discs (things) and of edges. wide: that of the wider cell, if made.
+
+    Also whether the middle of the cell lies inside a thing, and the edges that stand between it and a start.
     """
 
-    def __init__(self, scene: Scene, x: float, y: float, margin: float, max_range: float, height: float) -> None:
-        self.x, self.y, self._scene, self._reach = x, y, scene, max_range + margin
-        discs, edges = scene.still_discs, scene.still_edges
-        discs = discs[scene.height[discs] > height]
-        edges = edges[scene.height[scene.edge_thing[edges]] > height]
-        self._inside_of = _wound(scene, edges, x, y)
+    still_discs: Ints
+    still_edges: Ints
+    doubtful: Ints
+
+    def __init__(self, scene: Scene, cell: _Cell, wide: _Area | None) -> None:
+        self.scene = scene
+        self.x, self.y = x, y = (cell.column + 0.5) * cell.size, (cell.row + 0.5) * cell.size
+        margin = cell.size * math.sqrt(0.5) + cell.spread + MARGIN
+        self._reach = cell.max_range + margin
+        if wide is None:
+            discs, edges = scene.still_discs, scene.still_edges
+            discs = discs[scene.height[discs] > cell.height]
+            edges = edges[scene.height[scene.edge_thing[edges]] > cell.height]
+            self._inside_of = _wound(scene, edges, x, y)
+        else:
+            discs, edges = wide.still_discs, wide.still_edges
+            self._inside_of = wide.doubtful[wide.winding(np.array([x]), np.array([y]))[0] > 0]
         away = _distance(scene.edges[:, edges], x, y)
-        self._still_discs = discs[np.hypot(scene.x[discs] - x, scene.y[discs] - y) - scene.radius[discs] <= self._reach]
-        self._still_edges = edges[away <= self._reach]
+        self.still_discs = discs[np.hypot(scene.x[discs] - x, scene.y[discs] - y) <= self._reach + scene.radius[discs]]
+        self.still_edges = edges[away <= self._reach]
         self.near = edges[away <= margin]
         self._watch(scene)
-        self.moving_discs = scene.moving_discs[scene.height[scene.moving_discs] > height]
-        self.moving_edges = scene.moving_edges[scene.height[scene.edge_thing[scene.moving_edges]] > height]
+        self.moving_discs = scene.moving_discs[scene.height[scene.moving_discs] > cell.height]
+        self.moving_edges = scene.moving_edges[scene.height[scene.edge_thing[scene.moving_edges]] > cell.height]
         self._version = -1
+        self.struct = None if scene.compiled is None else scene.compiled.struct("area", *self._fields())
+
+    def _fields(self) -> tuple[dict[str, float | int], dict[str, NDArray[Any]]]:
+        """What the compiled loops want of it: numbers and arrays."""
+        lists = {
+            "still_disc": self.still_discs,
+            "moving_disc": self.moving_discs,
+            "still_edge": self.still_edges,
+            "moving_edge": self.moving_edges,
+        }
+        counts = {f"{name}_count": some.size for name, some in lists.items()}
+        numbers = {"x": self.x, "y": self.y, "near_count": self.near.size, "doubtful_count": self.doubtful.size}
+        watch = {"near": self.near, "doubtful": self.doubtful, "column": self._column, "wound": self.wound}
+        more = {"left": self._left, "winding": np.zeros_like(self.wound)}
+        return counts | numbers, {f"{name}s": some for name, some in lists.items()} | watch | more
 
     def _watch(self, scene: Scene) -> None:
         """Things that a start in the cell may lie inside of, and how often each winds round the middle."""
@@ -253,7 +326,7 @@ class _Area:
 
     def gather(self) -> None:
         """Bring `discs` (3, n: x, y, radius), `edges` (4, n) and which things they are up to the scene's present."""
-        scene = self._scene
+        scene = self.scene
         if self._version == scene.version:
             return
         self._version = scene.version
@@ -264,28 +337,28 @@ class _Area:
             ]
         if edges.size > FEW:
             edges = edges[_distance(scene.edges[:, edges], self.x, self.y) <= self._reach]
-        self.disc_thing = np.concatenate([self._still_discs, discs])
-        some = np.concatenate([self._still_edges, edges])
+        self.disc_thing = np.concatenate([self.still_discs, discs])
+        some = np.concatenate([self.still_edges, edges])
         self.edge_thing = scene.edge_thing[some]
         self.discs = np.array([column[self.disc_thing] for column in (scene.x, scene.y, scene.radius)])
         self.edges = scene.edges[:, some]
 
     def inside(self, x: Floats, y: Floats) -> tuple[Ints, Ints]:
         """Pairs of a start and a thing of edges that it lies inside of; all starts in the cell."""
-        which, column = np.nonzero(self._winding(x, y) > 0)
+        which, column = np.nonzero(self.winding(x, y) > 0)
         thing = self.doubtful[column]
         if self.moving_edges.size:
-            more = [(k, t) for k in range(x.size) for t in _wound(self._scene, self.moving_edges, x[k], y[k])]
+            more = [(k, t) for k in range(x.size) for t in _wound(self.scene, self.moving_edges, x[k], y[k])]
             which = np.concatenate([which, np.array([k for k, _ in more], dtype=np.intp)])
             thing = np.concatenate([thing, np.array([t for _, t in more], dtype=np.intp)])
         return which, thing
 
-    def _winding(self, x: Floats, y: Floats) -> Ints:
+    def winding(self, x: Floats, y: Floats) -> Ints:
         """(starts, doubtful things): what the edges add that lie between the middle of the cell and the start."""
         wound = np.repeat(self.wound[None], x.size, axis=0)
         if not self.near.size:
             return wound
-        ax, ay, bx, by = self._scene.edges[:, self.near]
+        ax, ay, bx, by = self.scene.edges[:, self.near]
         x, y = x[:, None], y[:, None]
         left = (ax - x) * (by - y) - (bx - x) * (ay - y) > 0
         ux, uy = x - self.x, y - self.y
@@ -364,6 +437,15 @@ def sweep_things(fan: Fan, pose: Pose, height: float, max_range: float, scene: S
 
 
 def _sweep(fan: Fan, pose: Pose, max_range: float, area: _Area, named: bool) -> tuple[Floats, Ints]:
+    compiled, scene = area.scene.compiled, area.scene.struct
+    if compiled is None or scene is None or area.struct is None:
+        return _sweep_arrays(fan, pose, max_range, area, named)
+    at = pose.x, pose.y, math.cos(pose.theta), math.sin(pose.theta)
+    return compiled.sweep(scene[0], area.struct[0], fan.struct(compiled), at, max_range, fan.bearings.size)
+
+
+def _sweep_arrays(fan: Fan, pose: Pose, max_range: float, area: _Area, named: bool) -> tuple[Floats, Ints]:
+    """Without a compiler; things only where `named`."""
     area.gather()
     count = fan.bearings.size
     first, number, front = _fan_intervals(fan, pose, area)
@@ -433,13 +515,24 @@ def cast(rays: Rays, max_range: float, scene: Scene) -> tuple[Floats, Ints]:
         return np.zeros(0), np.zeros(0, dtype=np.intp)
     x, y, spread = _middle(rays)
     area = scene.area(x, y, max_range, -math.inf, spread)
+    if scene.compiled is None or scene.struct is None or area.struct is None:
+        return _cast_arrays(rays, (x, y, spread), max_range, area)
+    numbers = {"count": rays.x.size, "middle_x": x, "middle_y": y, "spread": spread}
+    arrays = {"x": rays.x, "y": rays.y, "dx": np.cos(rays.angle), "dy": np.sin(rays.angle), "height": rays.height}
+    arrays = {name: np.ascontiguousarray(array, dtype=float) for name, array in arrays.items()}
+    struct, _kept = scene.compiled.struct("rays", numbers, arrays)
+    return scene.compiled.cast(scene.struct[0], area.struct[0], struct, max_range, rays.x.size)
+
+
+def _cast_arrays(rays: Rays, middle: tuple[float, float, float], max_range: float, area: _Area) -> tuple[Floats, Ints]:
+    """Without a compiler."""
     area.gather()
-    ray, at, thing = _any_hits(rays, x, y, spread, area)
+    ray, at, thing = _any_hits(rays, *middle, area)
     if area.doubtful.size or area.moving_edges.size:
         start, inside = area.inside(rays.x, rays.y)
         ray, at = np.concatenate([ray, start]), np.concatenate([at, np.zeros(start.size)])
         thing = np.concatenate([thing, inside])
-    high = rays.height[ray] < scene.height[thing]
+    high = rays.height[ray] < area.scene.height[thing]
     ray, at, thing = ray[high], at[high], thing[high]
     ranges = np.full(rays.x.shape, max_range)
     np.minimum.at(ranges, ray, at)

@@ -11,13 +11,15 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
 from behaviours.interface import Pose
 from sim.raycast import Circle, Fan, Outline, Polygon, Rays, Rings, Scene, cast, sweep, sweep_things
+from sim.raycast_c import Loops
+from sim.raycast_c import loops as compiled_loops
 
 TOLERANCE = 1e-9  # [m]
 POSES_PER_WORLD = 20
@@ -110,7 +112,9 @@ def outline(chance: np.random.Generator) -> Outline:
             return Polygon(tuple((size * math.cos(t), 0.6 * size * math.sin(t)) for t in turns))
         case _:
             yard = tuple(reversed(_star(chance, 1.4 * size, 1.8 * size, 9)))
-            return Rings((tuple(_star(chance, 2.2 * size, 3 * size, 12)), yard, tuple(_star(chance, 0.3 * size, size, 5))))
+            return Rings(
+                (tuple(_star(chance, 2.2 * size, 3 * size, 12)), yard, tuple(_star(chance, 0.3 * size, size, 5)))
+            )
 
 
 def pose(chance: np.random.Generator, half: float) -> Pose:
@@ -128,15 +132,15 @@ def _fan(chance: np.random.Generator) -> Fan:
 # --- the comparison -------------------------------------------------------------------------------
 
 
-def differences(poses: int, seed: int) -> Iterator[float]:
-    """For each pose the worst difference [m] of its rays; things move between poses."""
+def differences(poses: int, seed: int, loops: Callable[[], Loops | None] = compiled_loops) -> Iterator[float]:
+    """For each pose the worst difference [m] of its rays; things move between poses. loops: as for `Scene`."""
     chance = np.random.default_rng(seed)
     for number in range(poses):
         if number % POSES_PER_WORLD == 0:
             count, half = int(chance.integers(1, 40)), float(chance.uniform(3, 12))
             outlines = [outline(chance) for _ in range(count)]
             start, heights = [pose(chance, half) for _ in outlines], [float(h) for h in chance.uniform(0, 1, count)]
-            judge, scene = Judge(outlines, start, heights), Scene(outlines, start, heights)
+            judge, scene = Judge(outlines, start, heights), Scene(outlines, start, heights, loops)
         for index in chance.integers(0, count, int(chance.integers(0, 4))):
             away = Pose(1000.0 * (1 + float(index)), 1000.0)
             judge.poses[index] = away if chance.random() < 0.3 else pose(chance, half)
@@ -166,8 +170,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--poses", type=int, default=10000)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--arrays", action="store_true", help="without the compiled loops")
     asked = parser.parse_args()
-    found = list(differences(asked.poses, asked.seed))
+    found = list(differences(asked.poses, asked.seed, (lambda: None) if asked.arrays else compiled_loops))
     print(f"{len(found)} poses: worst difference {max(found):.3g} m (allowed {TOLERANCE:g} m)")
     sys.exit(max(found) > TOLERANCE)
 
