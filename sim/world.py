@@ -114,6 +114,7 @@ class World:
         """One tick with this command. Raises ValueError where a number in it is not finite."""
         if not command.is_finite():
             raise ValueError(f"a command must be finite, got {command}")
+        self.sense()  # whether or not anybody asked: sensors measure when they are due
         self.robot.command(command)
         if command.head is not None:
             self.head.command(command.head)
