@@ -26,7 +26,6 @@ from sim.things.thing import FRICTION, ROBOT
 SLOW = 0.02  # [m/s] below which it stands
 ALWAYS_FINE = 0.0045  # [m] that any hull may go in a sub-step without looking ahead
 DEPTH = 0.002  # [m] that it may go into a thing at first touch
-LONGEST_SUBSTEP = 0.05  # [s]
 SAME = 1e-9
 
 
@@ -44,21 +43,21 @@ class Robot:
         self.body = pymunk.Body(build.mass, _moment(build))
         self.body.velocity_func = self._drive
         self._flippers = Flippers()
-        self.shapes: tuple[pymunk.Shape, ...] = (self._shape(0.0),)
+        self.shapes: tuple[pymunk.Shape, ...] = (self._shape(),)
         space.add(self.body, *self.shapes)
-        spin = 0.0 if isinstance(build.hull, Circle) else build.radius
-        self._spin, self._margin = spin, (build.max_speed + build.max_turn_rate * spin) * LONGEST_SUBSTEP
-        self._feeler = self._shape(self._margin)  # not in the space
+        self._round = build.hull.radius if isinstance(build.hull, Circle) else 0.0
+        self._spin = 0.0 if self._round else build.radius
+        self._feeler = self._shape()  # not in the space
         self._x = self._y = self._angle = self._vx = self._vy = self._turn = 0.0
         self._mirrored = False
         self.put(start)
 
-    def _shape(self, margin: float) -> pymunk.Shape:
+    def _shape(self) -> pymunk.Shape:
         match self.build.hull:
             case Circle(radius):
-                shape: pymunk.Shape = pymunk.Circle(self.body, radius + margin)
+                shape: pymunk.Shape = pymunk.Circle(self.body, radius)
             case Polygon(vertices):
-                shape = pymunk.Poly(self.body, vertices, radius=margin)
+                shape = pymunk.Poly(self.body, vertices)
             case Rings():
                 raise ValueError("the hull of a robot is a circle or a convex polygon")
         shape.friction, shape.collision_type, shape.filter = FRICTION, ROBOT, pymunk.ShapeFilter(group=ROBOT)
@@ -114,8 +113,9 @@ class Robot:
     def _drive(self, body: pymunk.Body, _gravity: Vec2, _damping: float, dt: float) -> None:
         (vx, vy), turn = body.velocity, body.angular_velocity
         vx, vy, turn = self._next(body.angle, vx, vy, turn, dt)
-        if (math.hypot(vx, vy) + abs(turn) * self._spin) * dt > ALWAYS_FINE:
-            share = self._look_ahead(vx, vy, turn, dt)
+        way = (math.hypot(vx, vy) + abs(turn) * self._spin) * dt
+        if way > ALWAYS_FINE:
+            share = self._look_ahead(vx, vy, turn, dt, way)
             vx, vy, turn = vx * share, vy * share, turn * share
         body.velocity, body.angular_velocity = (vx, vy), turn
         self._mirrored = False
@@ -140,14 +140,18 @@ class Robot:
         self._motion = ramped(drive, motion, self._goal, dt)
         return hull(drive, self._motion, self._pitch)
 
-    def _look_ahead(self, vx: float, vy: float, turn: float, dt: float) -> float:
-        """Share of the motion after which the hull first goes `DEPTH` into a thing that it does not touch yet."""
+    def _look_ahead(self, vx: float, vy: float, turn: float, dt: float, way: float) -> float:
+        """Share of the motion after which the hull first goes `DEPTH` into a thing that it does not touch yet.
+
+        way [m]: as far as any place on the hull goes; what is farther from it cannot be met.
+        """
         (x, y), share = self.body.position, 1.0
+        self._feeler.unsafe_set_radius(self._round + way)
         for info in self._space.shape_query(self._feeler):
             body, (nx, ny) = None if info.shape.sensor else info.shape.body, info.contact_point_set.normal
             for point in info.contact_point_set.points:
                 (ax, ay), (bx, by) = point.point_a, point.point_b
-                gap = (bx - ax) * nx + (by - ay) * ny + self._margin
+                gap = (bx - ax) * nx + (by - ay) * ny + way
                 towards = (vx - turn * (by - y)) * nx + (vy + turn * (bx - x)) * ny
                 if gap > 0 and towards * dt > gap + DEPTH and body is not None:
                     away = max(0.0, body.velocity_at_world_point((bx, by)).dot((nx, ny)))
