@@ -16,6 +16,7 @@ import math
 from base64 import b64decode, b64encode
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields
+from operator import attrgetter
 from typing import Any, get_args
 
 import numpy as np
@@ -60,6 +61,10 @@ SENSORS: Mapping[str, type[Sensed]] = {
 
 KINDS: Mapping[str, type[Sensed]] = {kind.__name__: kind for kind in get_args(Sensed)}
 FIELDS = {kind: tuple(field.name for field in fields(kind)) for kind in KINDS.values()}
+VALUES: Mapping[type[Sensed], Callable[[Sensed], tuple[object, ...]]] = {
+    kind: attrgetter(*names) for kind, names in FIELDS.items()
+}
+_sensors = attrgetter(*SENSORS)
 
 _encode = json.JSONEncoder(separators=(",", ":"), check_circular=False, allow_nan=False).encode
 Parts = dict[str, object]
@@ -76,10 +81,12 @@ def _number(value: float) -> object:
 
 def _plain(value: object) -> object:
     match value:
-        case bool() | int():
-            return value
         case float():
             return _number(value)
+        case bool() | int():
+            return value
+        case np.bool_():
+            return bool(value)
         case np.ndarray():
             return b64encode((value if value.dtype == bool else value.astype("<f8")).tobytes()).decode("ascii")
         case Pose(x, y, theta):
@@ -90,26 +97,22 @@ def _plain(value: object) -> object:
             raise TypeError(f"a reading does not hold {value!r}")
 
 
-def _same(value: object, before: object) -> bool:
-    if value is before:
-        return True
-    return not isinstance(value, np.ndarray) and bool(value == before)
+@dataclass(frozen=True, slots=True)
+class _Said:
+    """A sensor, and the values of its fields."""
+
+    sensed: Sensed
+    values: tuple[object, ...]
 
 
-def _all(sensed: Sensed) -> Parts:
-    return {name: _plain(getattr(sensed, name)) for name in FIELDS[type(sensed)]}
-
-
-def _changed(sensed: Sensed, before: Sensed | None) -> Parts:
+def _changed(said: _Said, before: _Said | None) -> Parts:
     """The fields that differ from what the sensor said before; all where it said nothing or was of another kind."""
-    if sensed is before:
-        return {}
-    if type(sensed) is not type(before):
-        return _all(sensed)
+    kind = type(said.sensed)
+    if before is None or type(before.sensed) is not kind:
+        return {name: _plain(value) for name, value in zip(FIELDS[kind], said.values, strict=True)}
     parts: Parts = {}
-    for name in FIELDS[type(sensed)]:
-        value = getattr(sensed, name)
-        if not _same(value, getattr(before, name)):
+    for name, value, old in zip(FIELDS[kind], said.values, before.values, strict=True):
+        if value is not old and (type(value) is np.ndarray or value != old):
             parts[name] = _plain(value)
     return parts
 
@@ -118,33 +121,31 @@ class ReadingTexts:
     """Puts the readings of one run into texts; each is written against the one before."""
 
     def __init__(self) -> None:
-        self._before: dict[str, Sensed] = {}
+        self._before: dict[str, _Said] = {}
 
     def text(self, reading: Reading) -> str:
         """The JSON text of the next reading."""
-        now: dict[str, Sensed] = {}
-        parts: Parts = {
-            "tick": reading.tick,
-            "stamp": _plain(reading.stamp),
-            "object_on_board": reading.object_on_board,
-        }
-        for name in SENSORS:
-            sensed = getattr(reading, name)
+        now: dict[str, _Said] = {}
+        on_board = reading.object_on_board
+        parts: Parts = {"tick": reading.tick, "stamp": _number(reading.stamp), "object_on_board": on_board}
+        for name, sensed in zip(SENSORS, _sensors(reading), strict=True):
             if sensed is not None:
-                parts[name] = _changed(sensed, self._before.get(name))
-                now[name] = sensed
+                parts[name] = self._changes(name, sensed, now)
         if reading.others:
-            parts["others"] = self._others(reading.others, now)
+            parts["others"] = {
+                name: {"kind": type(sensed).__name__, **self._changes(f"others/{name}", sensed, now)}
+                for name, sensed in reading.others.items()
+            }
         self._before = now
         return _encode(parts)
 
-    def _others(self, others: Mapping[str, Sensed], now: dict[str, Sensed]) -> Parts:
-        parts: Parts = {}
-        for name, sensed in others.items():
-            key = f"others/{name}"
-            parts[name] = {"kind": type(sensed).__name__, **_changed(sensed, self._before.get(key))}
-            now[key] = sensed
-        return parts
+    def _changes(self, key: str, sensed: Sensed, now: dict[str, _Said]) -> Parts:
+        before = self._before.get(key)
+        if before is not None and sensed is before.sensed:
+            now[key] = before
+            return {}
+        now[key] = said = _Said(sensed, VALUES[type(sensed)](sensed))
+        return _changed(said, before)
 
 
 # --- reading --------------------------------------------------------------------------------------

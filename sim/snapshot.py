@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from behaviours.interface import Command, Floats, Pose, Reading
+from behaviours.interface import Command, Floats, Pose, Reading, wrap
 from sim.raycast import Circle, Outline, Polygon, Rings
 from sim.things.ground import Slope
 from sim.things.thing import Placed, Thing
@@ -51,7 +51,7 @@ def snapshot(world: World, stage: str, command: Command) -> Json:
         "stage": stage,
         "robot": _pose(world.robot.pose),
         "odometry": _pose(reading.odometry.pose),
-        "movers": {t.placed.id: _pose(t.pose) for t in world.things if t.present and _in_snapshots(world, t)},
+        "movers": _movers(world),
         "contacts": [{"thing": touch.thing, "driven_into": touch.driven_into} for touch in world.touches],
         "head": [_angle(head.pan), _angle(head.tilt)],
         "command": _command(command),
@@ -62,6 +62,16 @@ def snapshot(world: World, stage: str, command: Command) -> Json:
 def _in_snapshots(world: World, thing: Thing) -> bool:
     """Whether it may be elsewhere later, or gone."""
     return thing.placed.moves or thing is world.donor
+
+
+def _movers(world: World) -> Json:
+    """Where the things are that may be elsewhere, without those that are not there."""
+    movers: Json = {}
+    for thing in world.things:
+        if thing.present and (thing.placed.moves or thing is world.donor):
+            x, y = thing.body.position  # always finite
+            movers[thing.placed.id] = [round(x, 3), round(y, 3), round(wrap(thing.body.angle), 4)]
+    return movers
 
 
 def _donor(world: World) -> Json | None:

@@ -1,4 +1,4 @@
-"""Runs that are killed: `python tests/experiments/killed_runs.py --runs 20 --seed 0`. It exits 1 where too much is lost.
+"""Runs that are killed: `python tests/experiments/killed_runs.py --runs 20`. It exits with 1 where too much is lost.
 
 Takes: find and fetch in the parking lot. Gives: for each run the simulated time [s] at which SIGKILL struck, the time
 up to which the repaired recording goes, and what was lost. Leaves alone: why runs die.
