@@ -21,7 +21,7 @@ from behaviours.interface import (
     Scan,
     Sensed,
 )
-from sim.noise import named_chance, sensor_chance
+from sim.noise import chance, named_chance, sensor_chance
 from sim.raycast import Circle, Rays, Scene, box, cast
 from sim.robots.build import Build
 from sim.sensors.build import (
@@ -255,6 +255,12 @@ def test_the_second_of_a_kind_goes_to_the_others_under_its_name():
     assert isinstance(skirt, Ranges) and skirt.ranges.size == 6
 
 
+def test_the_rings_of_a_low_robot_are_low():
+    low = Suite((Installed("sonar", SonarBuild(0, 0)),), (), Build(Circle(0.2), height=0.24), ORIGIN, 0)
+    reading = low.sense(at(0, Scene([Circle(0.3)], [Pose(2, 0)], [0.15])), False)
+    assert reading.sonar.ranges[0] == pytest.approx(2.0 - 0.3 - 0.2)
+
+
 def test_two_sensors_of_one_name_are_an_error():
     with pytest.raises(ValueError, match="two sensors are called 'eye'"):
         suite(Installed("eye", LidarBuild()), Installed("eye", CompassBuild()))
@@ -307,9 +313,10 @@ def test_the_noise_of_a_range_has_a_constant_and_a_relative_part():
 
 
 def test_the_noise_of_the_angles_turns_beams():
-    wall = Scene([box(1, 400)], [Pose(4.5, 0)], [1.0])
+    wall = Scene([box(1, 400)], [Pose(4.5 * math.cos(2), 4.5 * math.sin(2), 2.0)], [1.0])
     build = LidarBuild(2 * math.radians(45), 3, sd=0.0, angle_sd=0.01, max_range=50.0)
-    ranges = np.array([scan.ranges for scan in samples(build, "lidar", 1500, scene=wall)])
+    scans = samples(build, "lidar", 1500, Mount(theta=0.5), scene=wall, pose=Pose(0, 0, 1.5))
+    ranges = np.array([scan.ranges for scan in scans])
     assert ranges[:, 2].std() == pytest.approx(0.01 * 4.0 * math.sqrt(2), rel=0.08)  # d(4 / cos a) / da at 45 degrees
     assert ranges[:, 1] == pytest.approx(4.0, abs=0.01)
 
@@ -481,6 +488,8 @@ def test_chance_follows_from_seed_and_name_alone():
     names = ["sonar", "infrared", "stereo", "odometry", "lidar", "lidar2", "a", "layout", "ü"]
     assert len({first(seed, name) for seed in (0, 1) for name in names}) == 2 * len(names)
     assert first(4, "lidar") == first(4, "lidar")
+    assert sensor_chance(4, "layout").random() != chance(4).layout.random()
+    assert sensor_chance(4, "sonar").random() == chance(4).sonar.random()
     assert named_chance(1, "a", "b").random() != named_chance(1, "ab").random()
 
 
