@@ -136,16 +136,28 @@ class _Odometry:
         table = np.array(rows, dtype=np.float64).reshape(-1, 6)
         table = table[np.argsort(table[:, 5], kind="stable")]
         self._table = table
-        self._turned = np.unwrap(table[:, 2]) if len(table) else table[:, 2]
+        if len(table) > 1:
+            table[:, 2] = np.unwrap(table[:, 2])
+            _add_speeds(table)
 
     def at(self, seen: _Seen) -> tuple[Pose, float, float]:
         """Pose, speed [m/s] and turn rate [rad/s] at the moment of the scan."""
         if not len(self._table):
             return seen.odometry, 0.0, 0.0
         stamps = self._table[:, 5]
-        columns = (self._table[:, 0], self._table[:, 1], self._turned, self._table[:, 3], self._table[:, 4])
+        columns = [self._table[:, column] for column in range(5)]
         x, y, theta, speed, turn_rate = (float(np.interp(seen.stamp, stamps, column)) for column in columns)
         return Pose(x, y, wrap(theta)), speed, turn_rate
+
+
+def _add_speeds(table: Floats) -> None:
+    """Many logs have no speeds (all 0): then they are reckoned from one pose to the next."""
+    if table[:, 3:5].any():
+        return
+    steps = np.diff(table[:, 5])
+    moving = np.where(steps > 0, steps, np.inf)
+    along = np.diff(table[:, 0]) * np.cos(table[:-1, 2]) + np.diff(table[:, 1]) * np.sin(table[:-1, 2])
+    table[1:, 3], table[1:, 4] = along / moving, np.diff(table[:, 2]) / moving
 
 
 def _entry(seen: _Seen, first: _Seen, poses: _Odometry, tick: int) -> Entry:

@@ -146,10 +146,12 @@ def _grey(picture: Image.Image) -> Grey:
     if picture.mode in ("1", "L"):
         return np.asarray(picture.convert("L"), dtype=np.uint8)
     if picture.mode.startswith(("I", "F")):
-        return np.multiply(np.asarray(picture, dtype=np.float32), np.float32(255 / 65535), dtype=np.float32)
+        deep: NDArray[np.float32] = np.array(picture, dtype=np.float32)
+        deep *= np.float32(255 / 65535)
+        return deep
     if "A" in picture.mode or "a" in picture.mode or "transparency" in picture.info:
         channels = np.asarray(picture.convert("RGBA"), dtype=np.uint8)
-        grey = channels[:, :, :3].mean(axis=2, dtype=np.float32)
+        grey: NDArray[np.float32] = np.array(channels[:, :, :3].mean(axis=2, dtype=np.float32))
         grey[channels[:, :, 3] < 255] = np.nan
         return grey
     channels = np.asarray(picture.convert("RGB"), dtype=np.uint8)
