@@ -11,7 +11,6 @@ from __future__ import annotations
 import hashlib
 import logging
 import pickle
-import signal
 import threading
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
@@ -22,7 +21,7 @@ import dask
 import distributed
 from distributed import KilledWorker, WorkerPlugin, get_worker
 
-from rplan.apps.sweep.processes import MOST_DEATHS, EngineError, died
+from rplan.apps.sweep.processes import MOST_DEATHS, EngineError, deaf_to_interrupts, died
 from rplan.apps.sweep.work import Row, Rows, Runner, Task, Work
 
 UNTYPED: Any = distributed
@@ -30,6 +29,13 @@ UNTYPED: Any = distributed
 AHEAD = 2
 """Tasks with the scheduler, for each thread of a worker: it is never idle, and a sweep of any size fits."""
 PATIENCE = 20  # [s] to reach the scheduler, and for it to have a worker
+PRIVATE = {
+    "host": "127.0.0.1",
+    "dashboard_address": "127.0.0.1:0",
+    "worker_dashboard_address": "127.0.0.1:0",
+    "silence_logs": logging.CRITICAL,
+}
+"""A cluster of this machine is heard and seen from this machine only."""
 SETTINGS = {"distributed.scheduler.allowed-failures": MOST_DEATHS - 1}
 
 
@@ -43,8 +49,13 @@ class Station(WorkerPlugin):
     def setup(self, worker: Any) -> None:  # noqa: ARG002
         """Compile, and leave Ctrl-C to the one who asked."""
         self.runner = Runner(self.work)
+        self.interrupts = ExitStack()
         if threading.current_thread() is threading.main_thread():
-            signal.signal(signal.SIGINT, signal.SIG_IGN)
+            self.interrupts.enter_context(deaf_to_interrupts())
+
+    def teardown(self, worker: Any) -> None:  # noqa: ARG002
+        """Hear it again."""
+        self.interrupts.close()
 
 
 def row(station: str, task: Task) -> Row:
@@ -76,9 +87,7 @@ def _client(opened: ExitStack, workers: int, address: str | None) -> Any:
             client = opened.enter_context(UNTYPED.Client(address, timeout=PATIENCE))
             client.wait_for_workers(1, timeout=PATIENCE)
             return client
-        cluster = UNTYPED.LocalCluster(
-            n_workers=workers, threads_per_worker=1, dashboard_address=None, silence_logs=logging.CRITICAL
-        )
+        cluster = UNTYPED.LocalCluster(n_workers=workers, threads_per_worker=1, **PRIVATE)
         return opened.enter_context(UNTYPED.Client(opened.enter_context(cluster)))
     except (OSError, ValueError, TimeoutError) as error:
         where = "on this machine" if address is None else f"with workers at {address}"
