@@ -92,7 +92,9 @@ class Sensor:
 
     def sense(self, truth: Truth) -> Measured | None:
         """What it says now; None while nothing has arrived."""
-        arrived = self._measured(truth) if self._due(truth) else None
+        arrived = self._measure(truth) if self._due(truth) else None
+        if arrived is not None and self._faults:
+            arrived = self._faulty(truth.time, arrived)
         if self._latency:
             arrived = self._delayed(truth, arrived)
         if arrived is not None:
@@ -100,10 +102,6 @@ class Sensor:
         elif self._fresh and self._latest is not None:
             self._latest, self._fresh = tuple([replace(reading, fresh=False) for reading in self._latest]), False
         return self._latest
-
-    def _measured(self, truth: Truth) -> Measured | None:
-        measured = self._measure(truth)
-        return self._faulty(truth.time, measured) if self._faults else measured
 
     def _delayed(self, truth: Truth, measured: Measured | None) -> Measured | None:
         """Put what was measured on its way, and take what arrives now."""
