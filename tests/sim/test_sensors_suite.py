@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from behaviours.interface import (
+    Command,
     Currents,
     Drive,
     FlipperState,
@@ -24,6 +25,7 @@ from behaviours.interface import (
 from sim.noise import chance, named_chance, sensor_chance
 from sim.raycast import Circle, Rays, Scene, box, cast
 from sim.robots.build import Build
+from sim.scenarios.format import loads
 from sim.sensors.build import (
     BumperBuild,
     CompassBuild,
@@ -45,6 +47,7 @@ from sim.sensors.suite import Suite
 from sim.sensors.truth import Truth
 from sim.sensors.weather import Weather
 from sim.things.ground import Ground, Slope
+from sim.world import World
 
 ORIGIN = Pose(0.0, 0.0)
 NOTHING = Scene([], [], [])
@@ -496,3 +499,45 @@ def test_chance_follows_from_seed_and_name_alone():
 def test_the_same_seed_gives_the_same_readings():
     runs = [readings(suite(*ALL, *MORE, seed=5), 12, scene=ROOM) for _ in range(2)]
     assert [told(r) for r in runs[0]] == [told(r) for r in runs[1]]
+
+
+# --- on a robot in a world ------------------------------------------------------------------------
+
+YARD = """
+name: yard
+bounds: [-5, -5, 5, 5]
+robot: {model: packbot, start: [0, 0], sensors: [
+  {kind: odometry, scale_sd: 0, turn_sd: 0}, {kind: lidar, sd: 0, at: [0.2, 0, 0]}, {kind: compass, sd: 0, bias_rms: 0},
+  {kind: bumper}, {kind: currents, sd: 0}, {kind: imu, turn_rate_sd: 0, bias_sd: 0}]}
+goal: {at: [4, 4], within: 1 m}
+things: [{kind: wall, from: [2, -5], to: [2, 5]}]
+faults: [{sensor: compass, kind: nan, at: 2, until: 3}]
+"""
+
+
+def yard(command: Command, ticks: int) -> tuple[World, list[Reading]]:
+    world = World(loads(YARD, "yard.yaml"), 0)
+    read = [world.sense()]
+    for _ in range(ticks):
+        world.step(command)
+        read.append(world.sense())
+    return world, read
+
+
+def test_tracks_that_turn_in_a_world_over_report_it_and_gyroscope_and_compass_do_not():
+    world, read = yard(Command(Drive(0.0, 0.5)), 30)
+    true, slip = world.robot.pose.theta, world.robot.build.drive.slip
+    assert read[-1].odometry.pose.theta == pytest.approx(slip * true)
+    assert (read[-1].imu.turn_rate, read[-1].compass.heading) == pytest.approx((world.robot.turn_rate, true))
+    assert [r.tick for r in read if math.isnan(r.compass.heading)] == list(range(20, 30))
+
+
+def test_a_robot_against_a_wall_feels_it_in_its_bumper_and_its_motors_and_sees_it_near():
+    world, read = yard(Command(Drive(0.5, 0.0)), 80)
+    struck, ahead = read[-1], int(np.argmin(np.abs(read[0].lidar.bearings)))
+    felt = struck.bumper.bearings[struck.bumper.pressed]
+    assert felt.size and (np.abs(felt) < 1).all() and not read[0].bumper.pressed.any()
+    assert struck.currents.left > 2 * read[20].currents.left > 0
+    assert read[0].lidar.ranges[ahead] == pytest.approx(2.0 - 0.1 - 0.2)
+    assert struck.lidar.ranges[ahead] == pytest.approx(1.9 - world.robot.pose.x - 0.2)
+    assert world.sense() is world.sense()
