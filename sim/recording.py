@@ -17,7 +17,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from io import FileIO
-from itertools import chain
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -200,14 +199,16 @@ def _as_oserror() -> Iterator[None]:
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """One run. ticks may be iterated again and again; those of a file are read anew each time, chunk by chunk.
+    """One run. ticks and readings may be iterated again and again; those of a file are read anew each time.
 
-    cut_short: the writer died before it closed the file; ticks has what it had written by then.
+    cut_short: the writer died before it closed the file; ticks has what it had written by then. readings: what the
+    robot sensed, at the same times as the ticks; none in a recording of the first format.
     """
 
     header: Json
     ticks: Iterable[Json]
     cut_short: bool = False
+    readings: Iterable[Reading] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,6 +218,18 @@ class _Ticks:
 
     def __iter__(self) -> Iterator[Json]:
         return (json.loads(data) for data in _messages(self.path, "/tick", self.cut_short))
+
+
+@dataclass(frozen=True, slots=True)
+class _Readings:
+    path: Path
+    cut_short: bool
+
+    def __iter__(self) -> Iterator[Reading]:
+        try:
+            yield from texts.readings(_messages(self.path, "/reading", self.cut_short))
+        except ValueError as fault:
+            raise RecordingError(f"{self.path} is damaged ({fault}): record the run again") from fault
 
 
 def records(path: Path) -> Iterator[McapRecord]:
@@ -276,7 +289,8 @@ def read(path: Path | str) -> Recording:
     """
     path = Path(path)
     cut_short = _is_cut_short(path)
-    return Recording(_header(path, cut_short), _Ticks(path, cut_short), cut_short)
+    header = _header(path, cut_short)
+    return Recording(header, _Ticks(path, cut_short), cut_short, _Readings(path, cut_short))
 
 
 def readings(path: Path | str) -> Iterator[Reading]:
@@ -285,14 +299,9 @@ def readings(path: Path | str) -> Iterator[Reading]:
     Raises RecordingError where the file is no recording, holds no readings or is damaged further in; OSError where it
     cannot be opened.
     """
-    path = Path(path)
-    cut_short = _is_cut_short(path)
-    _header(path, cut_short)
-    found = _messages(path, "/reading", cut_short)
+    found = iter(read(path).readings)
     first = next(found, None)
     if first is None:
         raise RecordingError(f"{path} holds no readings: record the run again with this rplan")
-    try:
-        yield from texts.readings(chain([first], found))
-    except ValueError as fault:
-        raise RecordingError(f"{path} is damaged ({fault}): record the run again") from fault
+    yield first
+    yield from found

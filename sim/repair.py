@@ -10,6 +10,7 @@ import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from mcap.records import Channel, Footer, Header, McapRecord, Message, Schema
 from mcap.writer import CompressionType, Writer
@@ -73,7 +74,7 @@ def _readable(path: Path) -> Iterator[McapRecord]:
 class _Copy:
     """Puts records into a writer; their numbers may change."""
 
-    writer: Writer
+    writer: Any
     schemas: dict[int, int] = field(default_factory=lambda: {0: 0})
     channels: dict[int, int] = field(default_factory=dict)
 
@@ -101,7 +102,7 @@ class _Copy:
 
 def _rewrite(path: Path, target: Path) -> None:
     with target.open("wb") as stream:
-        writer = Writer(stream, chunk_size=CHUNK, compression=CompressionType.ZSTD)
+        writer: Any = Writer(stream, chunk_size=CHUNK, compression=CompressionType.ZSTD)  # not typed throughout
         copy = _Copy(writer)
         for record in _readable(path):
             try:

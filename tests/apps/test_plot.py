@@ -86,7 +86,7 @@ def texts(recording: Recording, verdict: str = "") -> set[str]:
     """All words that are drawn."""
     import matplotlib.text
 
-    figure = plot._figure(recording, plot._track(recording), verdict)
+    figure = plot._figure(recording, plot.track_of(recording), verdict)
     return {text.get_text() for text in figure.findobj(matplotlib.text.Text) if text.get_text()}
 
 
@@ -103,7 +103,7 @@ def test_a_hand_written_brain_in_a_bare_world_is_drawn_too(tmp_path: Path) -> No
 
 
 def test_the_colours_go_by_where_the_plan_names_a_competence() -> None:
-    lasted = plot._lasted(plot._bands(["(a)", "(b)", "(b)", None, "(run-away)", "(a)", "(a)"]))
+    lasted = plot._lasted(plot.bands_of(["(a)", "(b)", "(b)", None, "(run-away)", "(a)", "(a)"]))
     assert list(lasted.items()) == [("(a)", 3), ("(b)", 2), (None, 1), ("(run-away)", 1)]
     first, second, *_ = plot.PALETTE
     expected = {"(b)": first, "(a)": second, None: plot.OPEN, "(run-away)": plot.DANGER}
@@ -111,7 +111,7 @@ def test_the_colours_go_by_where_the_plan_names_a_competence() -> None:
 
 
 def test_odometry_is_laid_on_the_first_true_pose() -> None:
-    track = plot._Track(pose=[(1.0, 2.0, math.pi / 2)], odometry=[(0.0, 0.0, 0.0), (3.0, 0.0, 0.0)])
+    track = plot.Track(pose=[(1.0, 2.0, math.pi / 2)], odometry=[(0.0, 0.0, 0.0), (3.0, 0.0, 0.0)])
     np.testing.assert_allclose(plot._believed(track), [(1.0, 2.0), (1.0, 5.0)], atol=1e-12)
 
 
