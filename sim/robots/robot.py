@@ -17,7 +17,7 @@ import pymunk
 
 from behaviours.interface import Command, Currents, Drive, Pose, Vec2, wrap
 from sim.raycast import Circle, Polygon, Rings
-from sim.robots.build import Build, Differential, SkidSteer, Synchro
+from sim.robots.build import Build, Differential, SkidSteer
 from sim.robots.drives import REST, Twist, aside, hull, ramped, reachable, unwound, wheels
 from sim.robots.load import CLIMBING, PUSHING, Flippers, currents, lost
 from sim.things.ground import Ground
@@ -80,7 +80,9 @@ class Robot:
 
     def command(self, command: Command) -> None:
         """What to do until the next command, clipped to what the drive can do; no drive: stop."""
-        self._goal = reachable(self.build.drive, command.drive or Drive(0.0, 0.0), self._motion)
+        wanted = command.drive or Drive(0.0, 0.0)
+        wanted = Drive(float(wanted.speed), float(wanted.turn_rate))  # numpy's numbers would spread, and are slow
+        self._goal = reachable(self.build.drive, wanted, self._motion)
         if isinstance(self.build.drive, SkidSteer):
             self._flippers.command(command.flippers)
 
@@ -143,20 +145,22 @@ class Robot:
     def _look_ahead(self, vx: float, vy: float, turn: float, dt: float, way: float) -> float:
         """Share of the motion after which the hull first goes `DEPTH` into a thing that it does not touch yet.
 
-        way [m]: as far as any place on the hull goes; what is farther from it cannot be met.
+        way [m]: as far as any place on the hull goes; what is farther from it cannot be met. A hull that presses on
+        one thing is thrown about by it, in whatever direction, so that all the others count then.
         """
-        (x, y), share = self.body.position, 1.0
+        (x, y), share, nearest, presses = self.body.position, 1.0, way, False
         self._feeler.unsafe_set_radius(self._round + way)
-        for info in self._space.shape_query(self._feeler):
-            body, (nx, ny) = None if info.shape.sensor else info.shape.body, info.contact_point_set.normal
-            for point in info.contact_point_set.points:
-                (ax, ay), (bx, by) = point.point_a, point.point_b
+        found = [info for info in self._space.shape_query(self._feeler) if not info.shape.sensor]
+        for body, near in [(info.shape.body, info.contact_point_set) for info in found]:
+            nx, ny = near.normal
+            for (ax, ay), (bx, by) in [(point.point_a, point.point_b) for point in near.points]:
                 gap = (bx - ax) * nx + (by - ay) * ny + way
                 towards = (vx - turn * (by - y)) * nx + (vy + turn * (bx - x)) * ny
-                if gap > 0 and towards * dt > gap + DEPTH and body is not None:
+                presses, nearest = presses or (gap <= 0 < towards), min(nearest, gap) if gap > 0 else nearest
+                if body is not None and gap > 0 and towards * dt > gap + DEPTH:
                     away = max(0.0, body.velocity_at_world_point((bx, by)).dot((nx, ny)))
                     share = min(share, ((gap + DEPTH) / dt + away) / towards)
-        return share
+        return min(share, (nearest + DEPTH) / way) if presses else share
 
     # --- the end of a tick ------------------------------------------------------------------------
 
@@ -208,7 +212,7 @@ class Robot:
 
 
 def _moment(build: Build) -> float:
-    if isinstance(build.hull, Polygon) and not isinstance(build.drive, Synchro):
+    if isinstance(build.hull, Polygon):
         return pymunk.moment_for_poly(build.mass, build.hull.vertices)
     return math.inf
 

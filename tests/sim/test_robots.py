@@ -148,6 +148,17 @@ def test_nothing_is_lost_on_free_ground(build):
         assert robot.blocked == 0.0
 
 
+def test_the_round_robot_drives_as_it_always_has():
+    robot, chance = placed(Build(), Pose(0.0, 0.0, 0.3)), np.random.default_rng(7)
+    for number in range(400):
+        if number % 5 == 0:
+            drive = Drive(chance.uniform(-0.3, 0.3), chance.uniform(-1.2, 1.2))
+        tick(robot, Command(drive))
+    x, y, theta = 0.24272696297789148, -0.7962523673204173, 3.0108453358718066
+    assert (robot.pose.x, robot.pose.y, robot.pose.theta) == pytest.approx((x, y, theta), abs=1e-12)
+    assert (robot.speed, robot.turn_rate) == pytest.approx((-0.1782529486718903, -0.8), abs=1e-12)
+
+
 def test_a_hull_of_rings_is_refused():
     with pytest.raises(ValueError, match="circle or a convex polygon"):
         placed(Build(Rings(()), Differential()))
@@ -241,6 +252,12 @@ def test_it_loses_speed_where_the_slope_begins():
     assert robot.blocked == 0.0
 
 
+def test_numbers_of_numpy_do_not_spread():
+    robot = let(placed(BUILDS["disc"]), Drive(np.float64(0.2), np.float64(0.1)), 1)
+    told = [robot.pose.x, robot.speed, robot.turn_rate, robot.wheels.speed, robot.load.left, robot.blocked]
+    assert {type(number) for number in told} == {float}
+
+
 def test_put_brings_it_to_rest_elsewhere():
     robot = let(placed(BUILDS["disc"]), Drive(0.4, 0.5), 3)
     robot.put(Pose(5.0, 6.0, 1.0))
@@ -278,6 +295,60 @@ def test_a_corner_that_turns_into_a_wall_is_stopped_by_it(name, drive):
     at = build.radius - 0.02  # the box is free as it stands, its corners are not when it turns
     wall(robot, at, 0.2)
     assert -0.005 < reached(robot, drive, SUBSTEPS) - at < 0.005
+
+
+def test_a_robot_comes_up_to_a_wall_before_it_goes_into_it():
+    robot, at = placed(BUILDS["box"]), 1.05
+    wall(robot, at)
+    seen: list[tuple[float, float]] = []
+    for _ in range(10):
+        tick(robot, Command(Drive(2.0, 0.0)), after=lambda: seen.append((frontmost(robot) - at, robot.asked[0])))
+    assert 0.0 < max(depth for depth, _ in seen) < 0.0025
+    assert seen[-1][1] == pytest.approx(2.0)  # it goes on asking
+
+
+@pytest.mark.parametrize("build", [BUILDS[name] for name in ("box", "tracks", "steered")])
+@pytest.mark.parametrize("seed", [3, 15, 21])
+def test_no_hull_leaves_a_cluttered_yard_or_goes_deep_into_what_stands_there(build, seed):
+    robot, chance, side = placed(build), np.random.default_rng(seed), 3 * build.radius + 1
+    standing = _yard(robot, chance, side)
+    depths = [0.0]
+    for number in range(150):
+        if number % 25 == 0:
+            forward, turn = chance.choice([1.0, 1.0, 1.0, 1.0, -1.0]), chance.uniform(-0.5, 0.5)
+            drive = Drive(forward * build.max_speed, turn * build.max_turn_rate)
+        tick(
+            robot,
+            Command(drive),
+            after=lambda: depths.append(max(_depth(robot, shape) for shape in standing)),
+        )
+        assert max(abs(robot.pose.x), abs(robot.pose.y)) < side
+        assert 0.0 <= robot.blocked <= 1.0
+    assert 0.0 < max(depths) < 0.01
+
+
+def _yard(robot: Robot, chance: np.random.Generator, side: float) -> list[pymunk.Shape]:
+    space, radius = robot.body.space, robot.build.radius
+    corners = [(-side, -side), (side, -side), (side, side), (-side, side), (-side, -side)]
+    shapes: list[pymunk.Shape] = [pymunk.Segment(space.static_body, a, b, 0.0) for a, b in pairwise(corners)]
+    for place in chance.uniform(-side, side, (10, 2)).tolist():
+        if math.hypot(*place) > 1.2 * radius + 0.4:
+            shapes.append(pymunk.Circle(space.static_body, 0.1 * radius + 0.05, place))
+    for shape in shapes:
+        shape.friction, shape.collision_type = FRICTION, OTHER
+    space.add(*shapes)
+    cart(robot, radius + 0.3, 0.1, 5.0)
+    return shapes
+
+
+def _depth(robot: Robot, shape: pymunk.Shape) -> float:
+    """How deep [m] the hull lies in a shape."""
+    x, y = robot.body.position
+    if shape.point_query((x, y)).distance > robot.build.radius + shape.radius:
+        return 0.0
+    found = [info for info in robot.body.space.shape_query(robot.shapes[0]) if info.shape is shape]
+    sets = [info.contact_point_set for info in found]
+    return max([-(p.point_b - p.point_a).dot(s.normal) for s in sets for p in s.points], default=0.0)
 
 
 def test_a_box_against_a_wall_is_turned_flat_by_it():
