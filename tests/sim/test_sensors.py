@@ -232,6 +232,19 @@ def test_the_sun_that_comes_out_in_mid_run_drowns_the_beacon():
     assert not reader.measure(at(20, scene, beacon=beacon, donor=0, weather=Weather(sun=0.0)))[0].detected
 
 
+def test_a_tall_donor_does_not_shade_its_own_beacon():
+    tall = Scene([Circle(0.25)], [Pose(5.0, 0.0)], [1.8])
+    reader = BeaconReader(InfraredBuild(), rng())
+    assert not reader.measure(at(10, tall, beacon=(5.0, 0.0), donor=0, weather=Weather(sun=0.0)))[0].detected
+
+
+@pytest.mark.parametrize(("degrees", "heard"), [(0, True), (28, True), (-28, True), (33, False), (-33, False)])
+def test_the_reader_hears_within_thirty_degrees_of_its_axis(degrees, heard):
+    near = at(10, Scene([Circle(0.25)], [Pose(3.0, 0.0)], [0.9]), beacon=(3.0, 0.0), donor=0)
+    aside = replace(near, head=HeadState(math.radians(degrees), 0.0, True))
+    assert BeaconReader(InfraredBuild(), rng()).measure(aside)[0].detected == heard
+
+
 def test_without_a_donor_nothing_is_heard():
     (reading,) = BeaconReader(InfraredBuild(), rng()).measure(at(10))
     assert (reading.detected, reading.fresh, reading.stamp) == (False, True, 1.0)

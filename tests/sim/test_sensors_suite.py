@@ -167,6 +167,13 @@ def test_several_readings_are_under_way_when_latency_is_longer_than_the_period()
     assert stamps(read[3:], "imu") == pytest.approx([0.1 * n for n in range(7)])
 
 
+def test_who_asks_seldom_gets_the_newest_that_has_arrived():
+    robot = suite(Installed("imu", ImuBuild(), latency=0.3))
+    seen = [robot.sense(at(tick), False).imu for tick in (0, 1, 2, 8, 9)]
+    assert seen[:3] == [None] * 3
+    assert (seen[3].stamp, seen[4].fresh) == (pytest.approx(0.2), False)
+
+
 def test_what_is_late_is_what_was_so_when_it_was_measured():
     robot = suite(Installed("compass", CompassBuild(0.0, 0.0), latency=0.2))
     seen = [robot.sense(at(tick, pose=Pose(0, 0, 0.1 * tick)), False).compass for tick in range(6)]
