@@ -7,9 +7,10 @@ import signal
 from collections.abc import Iterable
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
+import distributed
 import pytest
-from distributed import LocalCluster
 
 from rplan.apps.sweep import cluster
 from rplan.apps.sweep.cluster import PRIVATE, Station, row, run
@@ -69,7 +70,7 @@ def variant(deadly: float) -> Variant:
 def some(tmp_path: Path) -> Work:
     library = tmp_path / "spin.py"
     library.write_text(LIBRARY, encoding="utf-8")
-    return Work((Source("turning.rplan", PLAN),), (variant(0.0), variant(0.5)), (library,), until=1.0)
+    return Work((Source("turning.rplan", PLAN),), (variant(0.0), variant(1.0)), (library,), until=1.0)
 
 
 def told(rows: Iterable[tuple[Task, Row]]) -> dict[Task, Row]:
@@ -77,14 +78,12 @@ def told(rows: Iterable[tuple[Task, Row]]) -> dict[Task, Row]:
     return dict(sorted(plain.items(), key=lambda pair: pair[0].index))
 
 
-def test_dask_gives_the_rows_that_a_worker_gives(some: Work) -> None:
+def test_dask_gives_the_rows_that_a_worker_gives_also_where_one_is_killed(some: Work) -> None:
+    """The second variant kills the first worker that runs it."""
+    rows = told(run(some, tasks(some, SEEDS), 2))
+    assert list(Path(some.library_files[0]).parent.glob("*.died"))
     runner = Runner(some)
-    assert told(run(some, tasks(some, SEEDS), 2)) == told((task, runner.row(task)) for task in tasks(some, SEEDS))
-
-
-def test_a_worker_that_is_killed_costs_no_result(some: Work) -> None:
-    once = dataclasses.replace(some, variants=(variant(0.0), variant(1.0)))
-    assert [row["error"] for row in told(run(once, tasks(once, (3, 4)), 2)).values()] == [None] * 4
+    assert rows == told((task, runner.row(task)) for task in tasks(some, SEEDS))
 
 
 def test_an_episode_that_no_worker_survives_is_a_row_and_takes_no_other_one_down(
@@ -98,7 +97,9 @@ def test_an_episode_that_no_worker_survives_is_a_row_and_takes_no_other_one_down
 
 
 def test_a_cluster_that_runs_already_is_used_and_left_as_it_was(some: Work) -> None:
-    with LocalCluster(n_workers=1, threads_per_worker=2, processes=False, protocol="tcp", **PRIVATE) as running:
+    local: Any = distributed.LocalCluster
+    (some.library_files[0].parent / "spin.died").touch()
+    with local(n_workers=1, threads_per_worker=2, processes=False, protocol="tcp", **PRIVATE) as running:
         rows = told(run(some, tasks(some, SEEDS), 7, running.scheduler_address))
         assert [row["error"] for row in rows.values()] == [None] * 10
         assert [name for name in running.scheduler.worker_plugins if name.startswith("rplan")] == []

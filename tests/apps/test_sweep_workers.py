@@ -12,13 +12,16 @@ from pathlib import Path
 
 import pytest
 
-from rplan.apps.simulation import Run
+from rplan.apps.simulation import World, simulate
 from rplan.apps.sweep import processes, work
 from rplan.apps.sweep.processes import READY, THREADS, EngineError, Unfit, Worker, one_thread_each, run, serve, start
 from rplan.apps.sweep.rows import MEASURED
 from rplan.apps.sweep.work import Change, Row, Runner, Task, Variant, Work, in_words, row_of, tasks
+from rplan.apps.wiring import compile_file
 from rplan.lang.source import Source
+from sim.scenarios.format import loads
 
+PLANS = Path(__file__).parents[2] / "plans"
 LIBRARY = '''"""Turning on the spot, or ending the process that it runs in."""
 
 import os
@@ -129,14 +132,12 @@ def test_a_long_error_is_cut_and_an_empty_one_has_its_name() -> None:
     assert len(in_words(ValueError("x" * 10_000))) == work.LONGEST_ERROR
 
 
-def test_of_a_verdict_that_says_more_a_row_has_more(some: Work, monkeypatch: pytest.MonkeyPatch) -> None:
-    runs: list[Run] = []
-    simulate = work.simulate
-    monkeypatch.setattr(work, "simulate", lambda *args, **named: runs.append(simulate(*args, **named)) or runs[-1])
-    Runner(some).row(Task(0, 0, 0))
+def test_of_a_verdict_that_says_more_a_row_has_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    world = World(loads(NOOK), NOOK)
+    run = simulate(compile_file(PLANS / "make_room" / "make_room.rplan"), world, 0, until=1.0)
     more = {"laps": 3, "where": Path("x"), "far": float("inf"), "times": {"pit": 4.0}, "sectors": [1, 2]}
     monkeypatch.setattr(work, "asdict", lambda verdict: more)
-    row = row_of(runs[0])
+    row = row_of(run)
     assert {name: row[name] for name in ("laps", "where", "far", "pit", "sectors")} == {
         "laps": 3, "where": "x", "far": None, "pit": 4.0, "sectors": 2,
     }  # fmt: skip
