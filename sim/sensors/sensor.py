@@ -75,14 +75,8 @@ class Fixation:
 class Sensor:
     """One sensor of a robot. `sense` is called once a tick."""
 
-    def __init__(
-        self,
-        instrument: Instrument,
-        latency: float = 0.0,
-        faults: tuple[Fault, ...] = (),
-        chance: Generator | None = None,
-    ) -> None:
-        """chance: for dropouts; needed where there are faults."""
+    def __init__(self, instrument: Instrument, latency: float, faults: tuple[Fault, ...], chance: Generator) -> None:
+        """latency [s]; faults: its own; chance: which readings drop out."""
         self._due, self._measure = instrument.due, instrument.measure
         self._latency, self._faults, self._chance = latency, faults, chance
         self._latest = instrument.first
@@ -117,7 +111,7 @@ class Sensor:
         left: Measured | None = measured
         stuck = False
         for fault in self._faults:
-            if fault.start <= time < fault.end:
+            if fault.start <= time + ROUNDING < fault.end:
                 stuck = stuck or fault.kind == "stuck"
                 left = self._spoilt(fault, time, left)
         if not stuck:
@@ -127,8 +121,7 @@ class Sensor:
     def _spoilt(self, fault: Fault, time: float, measured: Measured | None) -> Measured | None:
         match fault.kind:
             case "dropout":
-                lost = self._chance is not None and self._chance.random() < fault.amount
-                return None if lost else measured
+                return None if self._chance.random() < fault.amount else measured
             case _ if measured is None:
                 return None
             case "stuck":

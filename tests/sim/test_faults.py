@@ -231,13 +231,22 @@ def test_a_fault_acts_on_what_is_measured_while_it_lasts_and_arrives_as_late_as_
     assert [r.tick for r in read if r.compass and math.isnan(r.compass.heading)] == [13, 14]
 
 
+def test_a_fault_begins_and_ends_with_its_tick_whatever_the_rounding_of_time():
+    fault = Fault("compass", "nan", 0.3, 0.6)
+    late, early = (1 + 1e-12, 1 - 1e-12)
+    for rounding in (late, early):
+        robot = Suite((sensor("compass"),), (fault,), Build(), Pose(0, 0), 3)
+        read = [robot.sense(replace(at(tick), time=tick / 10 * rounding), False) for tick in range(9)]
+        assert [r.tick for r in read if r.compass and math.isnan(r.compass.heading)] == [3, 4, 5]
+
+
 def test_a_fault_of_one_sensor_disturbs_no_other():
     pair = Installed("a", ImuBuild()), Installed("b", ImuBuild())
     sound, faulty = (
-        [Suite(pair, faults, Build(), Pose(0, 0), 3).sense(at(0), False) for _ in range(1)]
+        Suite(pair, faults, Build(), Pose(0, 0), 3).sense(at(0), False)
         for faults in ((), (Fault("a", "dropout", amount=0.5), Fault("a", "nan")))
     )
-    assert sound[0].others["b"] == faulty[0].others["b"]
+    assert sound.others["b"] == faulty.others["b"]
 
 
 def test_noise_goes_on_behind_a_fault_so_that_afterwards_all_is_as_without():
