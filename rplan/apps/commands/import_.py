@@ -24,6 +24,7 @@ from sim.scenarios.importers import (
     summary,
     text_of,
 )
+from sim.scenarios.importers.imported import MOST_METRES
 from sim.scenarios.schema import ScenarioError
 
 OUTPUT = click.Path(dir_okay=False, path_type=Path)
@@ -61,6 +62,8 @@ def command(
     Without -o the scenario goes to stdout. What of FILE is not in it is said on stderr and stands in the scenario.
     """
     path, number = split(file)
+    if start is not None and not all(abs(value) <= MOST_METRES for value in start):
+        raise InputError(f"--start: expected numbers up to {MOST_METRES:g}")
     options = Options(form or "", number if world is None else world, robot, model, start, resolution, least_area)
     try:
         if (form or format_of(path)) == LOG:

@@ -67,7 +67,7 @@ def _world(whole: dict[str, Any], options: Options, file: str) -> tuple[dict[str
         what = f"worlds[{place_in_file}].index"
         by_index[int(number(world.get("index", place_in_file), file, what, 0, 1e9))] = world
     index = asked_world(options, list(by_index), file)
-    others = f"the other {len(worlds) - 1} worlds of the file; this is number {index}"
+    others = f"the other worlds of the file ({len(worlds) - 1}); this is number {index}"
     return by_index[index], f"BARN {index}", (others,) if options.world is None and len(worlds) > 1 else ()
 
 

@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from behaviours.interface import Pose
-from sim.scenarios.grid import Bools, GridError, trace
+from sim.scenarios.grid import TOLERANCE, Bools, GridError, trace
 from sim.scenarios.importers.imported import Document, Options, WorldFileError, metres, place, radians, ring_text
 
 WALL_HEIGHT = 2.0
+DEVIATION = 0.05  # [m] that a simplified wall may lie from the map
 ORIGIN = Pose(0.0, 0.0, 0.0)
 LEAST_RESOLUTION, MOST_RESOLUTION = 0.001, 100.0
 ENOUGH = 4_000_000  # [cells] on which room for the robot is looked for; finer grids are made coarser
@@ -40,7 +41,8 @@ def charted(chart: Chart, options: Options) -> Document:
         message = f"cells must be from {LEAST_RESOLUTION:g} to {MOST_RESOLUTION:g} m wide, not {chart.resolution:g} m"
         raise WorldFileError(chart.file, 0, message)
     try:
-        rings = trace(chart.occupied, chart.resolution, chart.origin, least_area=options.least_area)
+        tolerance = tolerated(chart.resolution)
+        rings = trace(chart.occupied, chart.resolution, chart.origin, tolerance, options.least_area)
     except GridError as fault:
         raise WorldFileError(chart.file, 0, str(fault)) from fault
     start = options.start or _start(chart)
@@ -51,6 +53,11 @@ def charted(chart: Chart, options: Options) -> Document:
         "robot": {"model": options.model, "start": place(start), "heading": radians(start[2])},
         "things": [walls] if rings else [],
     }
+
+
+def tolerated(resolution: float) -> float:
+    """How far [cells of this size] rings may be simplified: coarse maps are taken at their word."""
+    return min(TOLERANCE, DEVIATION / resolution)
 
 
 def _world(chart: Chart, column: float, row: float) -> tuple[float, float]:

@@ -48,7 +48,7 @@ def read(path: Path, options: Options) -> Imported:
         "things": [*map(_wall, WALLS), *(_disc(disc, tracks, file) for disc in discs)],
         "time_limit": TIMEOUT,
     }
-    others = f"the other {len(known) - 1} worlds of the file; this is number {index}"
+    others = f"the other worlds of the file ({len(known) - 1}); this is number {index}"
     return Imported(document, (others,) if options.world is None and len(known) > 1 else ())
 
 

@@ -31,7 +31,7 @@ def read(path: Path, options: Options) -> Imported:
     occupied = np.isin(table, np.frombuffer(BLOCKED.encode(), dtype=np.uint8))
     document = charted(Chart(path.name, path.stem, occupied, ~occupied, options.resolution or 1.0), options)
     swamp = int((table == ord("S")).sum())
-    return Imported(document, (f"{swamp:,} cells of swamp; they are free",) if swamp else ())
+    return Imported(document, (f"swamp ({swamp:,} cells): it is free",) if swamp else ())
 
 
 def _header(file: str, lines: list[str]) -> tuple[int, int, int]:

@@ -47,7 +47,7 @@ def read(path: Path, options: Options) -> Imported:
     occupied, free = _cells(grey, limits)
     chart = Chart(path.name, path.stem, occupied, free, options.resolution or resolution, origin)
     unknown = int(occupied.size - occupied.sum() - free.sum())
-    left_out = (f"{unknown:,} cells of which the map says nothing; they are free",) if unknown else ()
+    left_out = (f"cells of which the map says nothing ({unknown:,}): they are free",) if unknown else ()
     return Imported(charted(chart, options), left_out)
 
 

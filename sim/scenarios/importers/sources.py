@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
+from PIL import Image, UnidentifiedImageError
 
 from sim.scenarios.grid import MOST_CELLS
 from sim.scenarios.importers.imported import Options, WorldFileError, number, shown
@@ -137,6 +137,9 @@ def read_picture(path: Path) -> Grey:
         raise WorldFileError(
             path.name, 0, f"the picture has too many cells; at most {MOST_CELLS:,} are read"
         ) from fault
+    except UnidentifiedImageError as fault:
+        known = ", ".join(PICTURES)
+        raise WorldFileError(path.name, 0, f"not a picture that can be read; expected one of {known}") from fault
     except Exception as fault:  # decoders of broken pictures raise whatever they run into
         reason = " ".join(str(fault).split())[:80] or type(fault).__name__
         raise WorldFileError(path.name, 0, f"not a picture that can be read ({reason})") from fault

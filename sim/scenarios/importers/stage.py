@@ -22,7 +22,7 @@ import numpy as np
 from behaviours.interface import Pose, Vec2
 from sim.scenarios.grid import Bools, GridError, Ring, trace
 from sim.scenarios.importers import stage_text
-from sim.scenarios.importers.chart import roomiest
+from sim.scenarios.importers.chart import roomiest, tolerated
 from sim.scenarios.importers.imported import (
     MOST_METRES,
     Document,
@@ -175,7 +175,7 @@ def _things(model: _Model, world: stage_text.World) -> Iterator[Document]:
         return
     if not _is_solid(entity):
         return
-    height = metres(_size(entity)[2])
+    height = metres(_height(entity))
     rings = _bitmap_rings(entity, world) if "bitmap" in entity.properties else _block_rings(entity)
     if not rings and "bitmap" not in entity.properties:
         yield _box(model, height)
@@ -209,6 +209,12 @@ def _box(model: _Model, height: float) -> Document:
     }
 
 
+def _height(entity: Entity) -> float:
+    """How high [m] it is with the rangers that stand on it."""
+    tops = [above + _size(ranger)[2] for ranger, _, above in _rangers(entity) if "size" in ranger.properties]
+    return _size(entity)[2] + max([0.0, *tops])
+
+
 def _origin(entity: Entity) -> Pose:
     """Where the middle of the shape lies in the model."""
     x, y, _, degrees = _numbers(entity, "origin", (0.0, 0.0, 0.0, 0.0))
@@ -231,7 +237,9 @@ def _grid(entity: Entity, world: stage_text.World) -> Bools:
 def _bitmap_rings(entity: Entity, world: stage_text.World) -> list[Ring]:
     grid = _grid(entity, world)
     try:
-        rings = trace(grid, 1.0, Pose(0.0, 0.0, 0.0))
+        length, width, _ = _size(entity)
+        cell = max(length / grid.shape[1], width / grid.shape[0])
+        rings = trace(grid, 1.0, Pose(0.0, 0.0, 0.0), tolerated(cell))
     except GridError as fault:
         raise entity.fault(f"bitmap: {fault}") from fault
     return _fitted(entity, rings, (0.0, 0.0), (float(grid.shape[1]), float(grid.shape[0])))
@@ -464,14 +472,14 @@ def _left_out(world: stage_text.World, solids: list[_Model], robot: _Model | Non
     )
     for kind, count in unknown.items():
         why = "nothing of this kind is simulated" if kind in SENSES else "this type is nowhere defined"
-        yield f"{kind} ({count} times): {why}"
+        yield f"{count} x {kind}: {why}"
     guessed = [model for model in solids if model.is_unknown_robot]
     if guessed:
         kinds = ", ".join(dict.fromkeys(model.entity.kind for model in guessed))
-        yield f"the bodies of {len(guessed)} robots of type {kinds}, which is nowhere defined: round, of 0.18 m"
+        yield f"what robots of type {kinds} ({len(guessed)}) look like, which is nowhere defined: round, of 0.18 m"
     others = [model for model in solids if model.is_robot and model is not robot]
     if others:
-        yield f"{len(others)} more robots: they stand where they are"
+        yield f"the other robots ({len(others)}): they stand where they are"
     if any("ctrl" in model.entity.properties for model in solids):
         yield "controllers of robots (ctrl)"
     if robot is None:
