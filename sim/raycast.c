@@ -20,7 +20,8 @@
 
 struct scene {
     const double *x, *y, *radius, *height;
-    const double *ax, *ay, *bx, *by;
+    double *ax, *ay, *bx, *by;
+    const double *own_ax, *own_ay, *own_bx, *own_by;
     const int64_t *edge_thing;
 };
 
@@ -81,6 +82,19 @@ static inline void try_edge(const struct found *found, int64_t ray, double dx, d
         const double along_a = dx * ax + dy * ay, along_b = dx * bx + dy * by;
         const double at = along_a + (along_b - along_a) * (a / (a - b));
         meet(found, ray, at > 0 ? at : 0.0, thing);
+    }
+}
+
+/* Edges from the body frame to the world, for a thing at (x, y) whose heading has cosine c and sine s. */
+void rplan_place(const struct scene *scene, int64_t first, int64_t last, double x, double y, double c, double s)
+{
+    int64_t e;
+    for (e = first; e < last; e++) {
+        const double ax = scene->own_ax[e], ay = scene->own_ay[e], bx = scene->own_bx[e], by = scene->own_by[e];
+        scene->ax[e] = x + (c * ax - s * ay);
+        scene->ay[e] = y + (s * ax + c * ay);
+        scene->bx[e] = x + (c * bx - s * by);
+        scene->by[e] = y + (s * bx + c * by);
     }
 }
 

@@ -172,7 +172,7 @@ class Scene:
     """The outlines of things at their present poses, laid out for casting.
 
     x, y [m], radius [m, that encloses], height [m]: of each thing. edges: (4, e) [m, world], edge_thing: (e,).
-    loops: gives the compiled loops, or None to do without; no result depends on it.
+    loops: gives the compiled loops, or None to do without; no result depends on it. One thread at a time.
     """
 
     def __init__(
@@ -195,8 +195,9 @@ class Scene:
         turn = np.array([(math.cos(pose.theta), math.sin(pose.theta)) for pose in poses]).reshape(-1, 2)
         self.edges = _moved(self._own, *(column[self.edge_thing] for column in (self.x, self.y, *turn.T)))
         self._theta = [pose.theta for pose in poses]
-        self._moving = np.zeros(len(own), dtype=bool)
-        self.version = 0
+        self._bounds = self.first_edge.tolist()
+        self.moving = np.zeros(len(own), dtype=bool)
+        self.version, self._settled = 0, True
         self.compiled = loops()
         self.struct = None if self.compiled is None else self.compiled.struct("scene", {}, self._arrays())
         self._settle()
@@ -204,6 +205,7 @@ class Scene:
     def _arrays(self) -> dict[str, NDArray[Any]]:
         """What the compiled loops look into; written in place ever after."""
         edges = dict(zip(("ax", "ay", "bx", "by"), self.edges, strict=True))
+        edges |= dict(zip(("own_ax", "own_ay", "own_bx", "own_by"), self._own, strict=True))
         things = {"x": self.x, "y": self.y, "radius": self.radius, "height": self.height}
         return things | edges | {"edge_thing": self.edge_thing}
 
@@ -214,37 +216,51 @@ class Scene:
             return
         self.x[index], self.y[index], self._theta[index] = x, y, theta
         if not self.round[index]:
-            part = slice(self.first_edge[index], self.first_edge[index + 1])
-            self.edges[:, part] = _moved(self._own[:, part], x, y, math.cos(theta), math.sin(theta))
+            self._place_edges(self._bounds[index], self._bounds[index + 1], x, y, math.cos(theta), math.sin(theta))
         self.version += 1
-        if not self._moving[index]:
-            self._moving[index] = True
-            self._settle()
+        if not self.moving[index]:
+            self.moving[index], self._settled = True, False
+
+    def _place_edges(self, first: int, last: int, x: float, y: float, c: float, s: float) -> None:
+        if self.compiled is not None and self.struct is not None:
+            self.compiled.place(self.struct[0], first, last, x, y, c, s)
+        else:
+            self.edges[:, first:last] = _moved(self._own[:, first:last], x, y, c, s)
 
     def _settle(self) -> None:
         """Sort what moves from what never did; forget the areas."""
-        self.moving_discs = np.flatnonzero(self._moving & self.round)
-        self.moving_edges = np.flatnonzero(self._moving[self.edge_thing])
-        self.still_discs = np.flatnonzero(~self._moving & self.round)
-        self.still_edges = np.flatnonzero(~self._moving[self.edge_thing])
-        self._many = self.still_discs.size + self.still_edges.size > MANY
+        self._settled = True
+        self.moving_discs = np.flatnonzero(self.moving & self.round)
+        self.moving_edges = np.flatnonzero(self.moving[self.edge_thing])
+        self._many = self.round.size + self.edge_thing.size > MANY
         self._areas: dict[_Cell, _Area] = {}
 
     def area(self, x: float, y: float, max_range: float, height: float, spread: float = 0.0) -> _Area:
         """What rays can meet that start within `spread` [m] of a place and run higher than `height` [m]."""
+        if not self._settled:
+            self._settle()
         size = max((max_range + spread) / CELLS, MARGIN)
-        return self._area(
-            _Cell(math.floor(x / size), math.floor(y / size), size, max_range, height, spread), self._many
-        )
+        cell = _Cell(math.floor(x / size), math.floor(y / size), size, max_range, height, spread)
+        return self._areas.get(cell) or self._made(cell)
 
-    def _area(self, cell: _Cell, within_wide: bool) -> _Area:
+    def _made(self, cell: _Cell) -> _Area:
+        return self._kept(cell, self._kept(cell.around(), None) if self._many else None)
+
+    def _kept(self, cell: _Cell, wide: _Area | None) -> _Area:
         area = self._areas.get(cell)
         if area is None:
-            wide = self._area(cell.around(), False) if within_wide else None
             if len(self._areas) >= KEPT:
                 del self._areas[next(iter(self._areas))]
             area = self._areas[cell] = _Area(self, cell, wide)
         return area
+
+    def still_within(self, x: float, y: float, distance: float, height: float) -> tuple[Ints, Ints]:
+        """Discs that never moved, higher than `height` [m] and so near, and all edges of such things."""
+        to_x, to_y, far = self.x - x, self.y - y, self.radius + (distance + MARGIN)
+        things = np.flatnonzero((to_x * to_x + to_y * to_y <= far * far) & (self.height > height) & ~self.moving)
+        discs, flat = things[self.round[things]], things[~self.round[things]]
+        first = self.first_edge[flat]
+        return discs, _pairs(first, self.first_edge[flat + 1] - first)[1]
 
 
 def _moved(edges: Floats, x: Floats | float, y: Floats | float, c: Floats | float, s: Floats | float) -> Floats:
@@ -284,9 +300,7 @@ class _Area:
         margin = cell.size * math.sqrt(0.5) + cell.spread + MARGIN
         self._reach = cell.max_range + margin
         if wide is None:
-            discs, edges = scene.still_discs, scene.still_edges
-            discs = discs[scene.height[discs] > cell.height]
-            edges = edges[scene.height[scene.edge_thing[edges]] > cell.height]
+            discs, edges = scene.still_within(x, y, self._reach, cell.height)
             self._inside_of = _wound(scene, edges, x, y)
         else:
             discs, edges = wide.still_discs, wide.still_edges

@@ -47,6 +47,10 @@ class Loops:
             setattr(made, name, self._ffi.cast("void *", buffer))
         return made, (buffers, arrays)
 
+    def place(self, scene: Any, first: int, last: int, x: float, y: float, c: float, s: float) -> None:
+        """Edges [first, last) from the frame of a thing at (x, y), cosine c and sine s of its heading, to the world."""
+        self._library.rplan_place(scene, first, last, x, y, c, s)
+
     def sweep(
         self, scene: Any, area: Any, fan: Any, pose: tuple[float, float, float, float], max_range: float, count: int
     ) -> tuple[Array, Array]:
