@@ -12,7 +12,10 @@ Frames: `world`; `odom`, the frame of the odometry, which lies in the world wher
 | `/scene` | SceneUpdate, what stands, and the hull in the frame `robot` | once |
 | `/map` | Grid of what stands, 0 or 100 | once |
 | `/movers` | SceneUpdate of all that can move | when one has moved, at most twice a second |
-| `/scan`, `/sonar` | LaserScan, PointCloud (echoes only) | when measured |
+| `/scan` | LaserScan | when measured, at most five times a second |
+| `/sonar` | PointCloud of the echoes | when measured |
+
+A lidar or ring of sonars of which there are several has its name behind a slash: `/scan/rear`.
 """
 
 from __future__ import annotations
@@ -66,8 +69,8 @@ Json = Mapping[str, object]
 Row = tuple[float, float, float]
 Ring = list[tuple[float, float]]
 
-MOVERS_S = 0.5
-"""Movers are shown at this distance in time [s] at least."""
+MOVERS_S, SCANS_S = 0.5, 0.2
+"""Movers and the scans of one lidar are shown at these distances in time [s] at least."""
 
 THING = Color(r=0.55, g=0.60, b=0.67, a=1.0)
 MOVER = Color(r=0.85, g=0.64, b=0.25, a=1.0)
@@ -317,6 +320,7 @@ class View:
         self._odometry = PoseInFrameChannel("/odometry", context=context)
         self._movers = SceneUpdateChannel("/movers", context=context)
         self._scans: dict[str, LaserScanChannel] = {}
+        self._scans_due: dict[str, int] = {}
         self._sonars: dict[str, PointCloudChannel] = {}
         donor = mapping(world.get("donor")).get("id")
         every = map(mapping, listed(world.get("movers")))
@@ -370,8 +374,9 @@ class View:
         named = [("", reading.lidar), *((f"/{name}", one) for name, one in reading.others.items())]
         for name, one in named:
             match one:
-                case Scan() if one.fresh and one.ranges.size:
+                case Scan() if one.fresh and one.ranges.size and nanoseconds >= self._scans_due.get(name, 0):
                     self._scan_channel(name).log(_scan(one, stamp), log_time=nanoseconds)
+                    self._scans_due[name] = nanoseconds + round(SCANS_S * 1e9) - 1
                 case Ranges() if one.fresh:
                     self._sonar_channel(name).log(_cloud([one], stamp), log_time=nanoseconds)
                 case _:

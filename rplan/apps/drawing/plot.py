@@ -366,6 +366,8 @@ def bounds_of(world: Json, track: Track) -> tuple[float, float, float, float]:
         case _:
             lot = -math.inf, -math.inf, math.inf, math.inf
     places = [pose[:2] for pose in (*track.pose, *track.movers.get(donor_id_of(world), []))]
+    if goal := [_number(value) for value in listed(mapping(world.get("goal")).get("at"))]:
+        places.append((goal[0], goal[1]))
     xs, ys = [place[0] for place in places], [place[1] for place in places]
     left, right = max(lot[0], min(xs) - MARGIN), min(lot[2], max(xs) + MARGIN)
     return left, max(lot[1], min(ys) - MARGIN), right, min(lot[3], max(ys) + MARGIN)

@@ -14,7 +14,7 @@ import shutil
 import subprocess
 from bisect import bisect_right
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from itertools import islice
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
@@ -78,20 +78,20 @@ def _encoder(ffmpeg: str, path: Path, size: tuple[int, int], fps: int) -> Iterat
     command = [ffmpeg, "-y", "-loglevel", "error", *given, *made, "-f", "mp4", str(path)]
     process = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE)
     assert process.stdin is not None and process.stderr is not None
-    broken = False
     try:
         yield process.stdin
-        process.stdin.close()
     except BrokenPipeError:
-        broken = True
+        pass  # it says why, below
     except BaseException:
         process.kill()
         raise
     finally:
+        with suppress(BrokenPipeError):
+            process.stdin.close()
         said = process.stderr.read().decode("utf-8", errors="replace").strip()
         process.stderr.close()
         code = process.wait()
-    if broken or code:
+    if code:
         raise VideoError(f"ffmpeg could not make {path}: {said.splitlines()[-1] if said else f'exit code {code}'}")
 
 
