@@ -14,7 +14,7 @@ from types import MappingProxyType
 
 from sim.scenarios.format import loads
 from sim.scenarios.importers import barn, dynabarn, micromouse, moving_ai, ros_map, stage, wall_follower
-from sim.scenarios.importers.imported import Document, Imported, Options, WorldFileError
+from sim.scenarios.importers.imported import Document, Imported, Options, WorldFileError, printable
 from sim.scenarios.importers.sources import decoded, read_bytes, unpacked
 from sim.scenarios.importers.written import yaml_text
 from sim.scenarios.scenario import Scenario
@@ -110,9 +110,9 @@ def read(path: Path, options: Options) -> Imported:
 
 def _signed(imported: Imported, path: Path, form: str) -> Document:
     """The document with its source, and what was left out."""
-    texts = [" ".join(text.split())[:500] for text in imported.left_out]
-    name = "".join(sign if sign.isprintable() else "?" for sign in str(imported.document["name"])).strip()
-    signed = imported.document | {"name": name or form, "source": f"{path.name} ({form})"}
+    texts = [printable(text, 500) for text in imported.left_out]
+    name = printable(str(imported.document["name"]), 100).strip()
+    signed = imported.document | {"name": name or form, "source": printable(f"{path.name} ({form})")}
     return signed | ({"left_out": texts} if texts else {})
 
 

@@ -53,7 +53,7 @@ class WorldFileError(Exception):
 
     def __init__(self, file: str, line: int, message: str) -> None:
         self.file, self.line, self.message = file, line, message
-        super().__init__(f"{file}:{line}: {message}" if line else f"{file}: {message}")
+        super().__init__(printable(f"{file}:{line}: {message}" if line else f"{file}: {message}", 400))
 
 
 def metres(length: float) -> float:
@@ -75,6 +75,12 @@ def ring_text(ring: Iterable[Vec2]) -> str:
     """A ring as one text "x y, x y, …"; corners that fall together are one."""
     corners = list(dict.fromkeys(f"{_short(x)} {_short(y)}" for x, y in ring))
     return ", ".join(corners)
+
+
+def printable(text: str, most: int = 200) -> str:
+    """The text on one line, without signs that cannot be shown, and not longer than that."""
+    line = "".join(sign if sign.isprintable() else "?" for sign in " ".join(text.split()))
+    return line if len(line) <= most else line[: most - 1] + "…"
 
 
 def _short(number: float) -> str:

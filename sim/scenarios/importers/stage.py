@@ -32,6 +32,7 @@ from sim.scenarios.importers.imported import (
     box_round,
     metres,
     place,
+    printable,
     radians,
     ring_text,
     shown,
@@ -94,7 +95,7 @@ class _Model:
     @property
     def name(self) -> str:
         name = self.entity.properties.get("name", "")
-        return name if isinstance(name, str) else ""
+        return printable(name, 80) if isinstance(name, str) else ""
 
 
 def _models(world: stage_text.World) -> list[_Model]:
@@ -402,7 +403,7 @@ def _lidars(entity: Entity, height: float) -> list[Document]:
     taken: Counter[str] = Counter(["odometry"])
     for ranger, at, above in _rangers(entity):
         for sensor in [part for part in ranger.parts if part.kind == "sensor"] or [ranger]:
-            name = ranger.kinds[0]
+            name = printable(ranger.kinds[0], 80)
             taken[name] += 1
             lidar = _lidar(sensor, _on(at, _pose(sensor)) if sensor is not ranger else at)
             level = max(metres(height + above), 0.01)
