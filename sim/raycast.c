@@ -65,12 +65,11 @@ static inline void try_disc(const struct found *found, int64_t ray, double dx, d
                             double radius, int64_t thing)
 {
     const double along = dx * x + dy * y, across = fabs(dx * y - dy * x);
-    if (across <= radius) {
+    if (across <= radius && (along > 0 || x * x + y * y < radius * radius)) {
         const double square = (radius - across) * (radius + across);
         const double half = sqrt(square >= 0 ? square : 0.0);
         const double enter = along - half;
-        if (along + half > 0)
-            meet(found, ray, enter > 0 ? enter : 0.0, thing);
+        meet(found, ray, enter > 0 ? enter : 0.0, thing);
     }
 }
 
@@ -146,7 +145,7 @@ static inline int inside(const struct scene *scene, const struct area *area, dou
 {
     const double ux = x - area->x, uy = y - area->y;
     int64_t k, winding = 0;
-    int found = 0;
+    int found = 0, on_rim = 0;
     for (k = 0; k < area->doubtful_count; k++)
         area->winding[k] = area->wound[k];
     for (k = 0; k < area->near_count; k++) {
@@ -165,17 +164,18 @@ static inline int inside(const struct scene *scene, const struct area *area, dou
     for (k = 0; k < area->moving_edge_count; k++) {
         const int64_t e = area->moving_edges[k], of = scene->edge_thing[e];
         const double ax = scene->ax[e], ay = scene->ay[e], bx = scene->bx[e], by = scene->by[e];
-        if ((ay <= y) != (by <= y)) {
-            const double side = (ax - x) * (by - y) - (bx - x) * (ay - y);
-            if (ay <= y ? side > 0 : side < 0)
-                winding += ay <= y ? 1 : -1;
-        }
+        const double side = (ax - x) * (by - y) - (bx - x) * (ay - y);
+        if ((ay <= y) != (by <= y) && (ay <= y ? side > 0 : side < 0))
+            winding += ay <= y ? 1 : -1;
+        if (side == 0 && fmin(ax, bx) <= x && x <= fmax(ax, bx) && fmin(ay, by) <= y && y <= fmax(ay, by))
+            on_rim = 1;
         if (k + 1 == area->moving_edge_count || scene->edge_thing[area->moving_edges[k + 1]] != of) {
-            if (winding > 0 && height < scene->height[of] && (!found || of < *thing)) {
+            if (winding > 0 && !on_rim && height < scene->height[of] && (!found || of < *thing)) {
                 *thing = of;
                 found = 1;
             }
             winding = 0;
+            on_rim = 0;
         }
     }
     return found;
@@ -214,10 +214,15 @@ static void sweep_edges(const struct scene *scene, const int64_t *edges, int64_t
         const double ax = scene->ax[e] - x, ay = scene->ay[e] - y, bx = scene->bx[e] - x, by = scene->by[e] - y;
         const double area = ax * by - bx * ay, ex = bx - ax, ey = by - ay;
         struct run run;
-        if (!(area < 0) || area * area > far * (ex * ex + ey * ey))
+        if (!(area <= 0) || area * area > far * (ex * ex + ey * ey))
             continue;
-        run = between(fan->before, fan->count, bucket(bx * c + by * s, by * c - bx * s),
-                      bucket(ax * c + ay * s, ay * c - ax * s));
+        if (area < 0) {
+            run = between(fan->before, fan->count, bucket(bx * c + by * s, by * c - bx * s),
+                          bucket(ax * c + ay * s, ay * c - ax * s));
+        } else {
+            run.first = 0;
+            run.number = fan->count;
+        }
         for (j = run.first; j < run.first + run.number; j++) {
             const int64_t ray = fan->order[j];
             try_edge(found, ray, dx[ray], dy[ray], ax, ay, bx, by, scene->edge_thing[e]);
@@ -331,7 +336,7 @@ static void cast_edges(const struct scene *scene, const int64_t *edges, int64_t 
             const int64_t ray = order[j];
             const double ax = scene->ax[e] - rays->x[ray], ay = scene->ay[e] - rays->y[ray];
             const double bx = scene->bx[e] - rays->x[ray], by = scene->by[e] - rays->y[ray];
-            if (ax * by - bx * ay < 0 && rays->height[ray] < scene->height[thing])
+            if (ax * by - bx * ay <= 0 && rays->height[ray] < scene->height[thing])
                 try_edge(found, ray, rays->dx[ray], rays->dy[ray], ax, ay, bx, by, thing);
         }
     }

@@ -9,7 +9,8 @@ Method. All outlines are discs and directed edges with the solid on the left. Wh
 moved is a list of its own. Seen from the origin each disc and each edge that shows its front fills an interval of
 angles; only the rays in it are tried (a margin makes sure that none is lost, so no cull ever shows in a result).
 A ray meets an edge when one end lies on either side of it, ends included; neighbours share the very same corner, so
-that no ray slips through. The distance is a mean of the ends' distances along the ray, weighted by how far they lie
+that no ray slips through. A start on a rim meets the thing at once where the ray leads into it, and not where it leads
+away. The distance is a mean of the ends' distances along the ray, weighted by how far they lie
 off it: never outside the edge, however flat the ray. A ray that starts inside a thing meets it at distance 0; whether
 it does is known from the middle of the cell and the edges between there and the start.
 
@@ -36,6 +37,8 @@ SLACK = 1e-7  # [rad] by which intervals of angles are wider than need be
 MARGIN = 1e-6  # [m] by which areas are wider than need be
 TINY = 1e-200
 CELLS = 8  # the width of a cell is the reach of its rays over this; a wide cell has so many across
+SHIFT = 0.1  # share of a cell by which the place that stands for it may lie off its middle
+ATTEMPTS, CLEAR = 40, 1e-9  # to find one that no edge comes so near [m]
 MANY = 1000  # still discs and edges from this number on are sorted out by wide cells first
 KEPT = 64  # areas that are remembered; the oldest goes first
 FEW = 64  # moving things up to this number are not sorted out by distance
@@ -239,8 +242,9 @@ class Scene:
         """What rays can meet that start within `spread` [m] of a place and run higher than `height` [m]."""
         if not self._settled:
             self._settle()
-        size = max((max_range + spread) / CELLS, MARGIN)
-        cell = _Cell(math.floor(x / size), math.floor(y / size), size, max_range, height, spread)
+        extent = max(math.ceil(max_range), 1.0)  # so that few areas do for many ranges
+        size = (extent + spread) / CELLS
+        cell = _Cell(math.floor(x / size), math.floor(y / size), size, extent, height, spread)
         return self._areas.get(cell) or self._made(cell)
 
     def _made(self, cell: _Cell) -> _Area:
@@ -275,7 +279,7 @@ class _Cell(NamedTuple):
     column: int
     row: int
     size: float
-    max_range: float
+    extent: float
     height: float
     spread: float
 
@@ -296,19 +300,22 @@ class _Area:
 
     def __init__(self, scene: Scene, cell: _Cell, wide: _Area | None) -> None:
         self.scene = scene
-        self.x, self.y = x, y = (cell.column + 0.5) * cell.size, (cell.row + 0.5) * cell.size
-        margin = cell.size * math.sqrt(0.5) + cell.spread + MARGIN
-        self._reach = cell.max_range + margin
+        margin = cell.size * (math.sqrt(0.5) + SHIFT) + cell.spread + MARGIN
+        self._reach = cell.extent + margin
+        middle = (cell.column + 0.5) * cell.size, (cell.row + 0.5) * cell.size
         if wide is None:
-            discs, edges = scene.still_within(x, y, self._reach, cell.height)
-            self._inside_of = _wound(scene, edges, x, y)
+            discs, edges = scene.still_within(*middle, self._reach + SHIFT * cell.size, cell.height)
         else:
             discs, edges = wide.still_discs, wide.still_edges
-            self._inside_of = wide.doubtful[wide.winding(np.array([x]), np.array([y]))[0] > 0]
-        away = _distance(scene.edges[:, edges], x, y)
+        self.x, self.y, away = _off_edges(scene.edges[:, edges], *middle, SHIFT * cell.size)
+        x, y = self.x, self.y
         self.still_discs = discs[np.hypot(scene.x[discs] - x, scene.y[discs] - y) <= self._reach + scene.radius[discs]]
         self.still_edges = edges[away <= self._reach]
         self.near = edges[away <= margin]
+        if wide is None:
+            self._inside_of = _wound(scene, edges, x, y)
+        else:
+            self._inside_of = wide.doubtful[wide.winding(np.array([x]), np.array([y]))[0] > 0]
         self._watch(scene)
         self.moving_discs = scene.moving_discs[scene.height[scene.moving_discs] > cell.height]
         self.moving_edges = scene.moving_edges[scene.height[scene.edge_thing[scene.moving_edges]] > cell.height]
@@ -392,29 +399,41 @@ def _distance(edges: Floats, x: float, y: float) -> Floats:
     return away
 
 
+def _off_edges(edges: Floats, x: float, y: float, shift: float) -> tuple[float, float, Floats]:
+    """A place near (x, y) that lies on no edge, so that its side of each is beyond doubt; its distance to each [m]."""
+    for attempt in range(ATTEMPTS):
+        turn, way = attempt * 2.4, shift * attempt / ATTEMPTS
+        at_x, at_y = x + way * math.cos(turn), y + way * math.sin(turn)
+        away = _distance(edges, at_x, at_y)
+        if not away.size or away.min() > CLEAR:
+            break
+    return at_x, at_y, away
+
+
 def _wound(scene: Scene, edges: Ints, x: float, y: float) -> Ints:
-    """Things among these edges (all edges of a thing, or none) that wind round a place."""
+    """Things among these edges (all edges of a thing, or none) in whose solid a place lies, rims left out."""
     ax, ay, bx, by = scene.edges[:, edges]
-    up, down = (ay <= y) & (by > y), (ay > y) & (by <= y)
-    crossed = np.flatnonzero(up | down)
-    ax, ay, bx, by = ax[crossed], ay[crossed], bx[crossed], by[crossed]
     side = (ax - x) * (by - y) - (bx - x) * (ay - y)
-    turn = np.where(up[crossed] & (side > 0), 1, np.where(down[crossed] & (side < 0), -1, 0))
-    of, place = np.unique(scene.edge_thing[edges][crossed], return_inverse=True)
+    level = (ay <= y) != (by <= y)
+    turn = np.where(level & (ay <= y) & (side > 0), 1, np.where(level & (ay > y) & (side < 0), -1, 0))
+    some = np.flatnonzero(turn)
+    of, place = np.unique(scene.edge_thing[edges[some]], return_inverse=True)
     winding = np.zeros(of.size, dtype=np.intp)
-    np.add.at(winding, place, turn)
-    return of[winding > 0]
+    np.add.at(winding, place, turn[some])
+    on = (side == 0) & (np.minimum(ax, bx) <= x) & (x <= np.maximum(ax, bx))
+    on &= (np.minimum(ay, by) <= y) & (y <= np.maximum(ay, by))
+    return of[(winding > 0) & ~np.isin(of, scene.edge_thing[edges[on]])]
 
 
 # --- one ray, one shape ---------------------------------------------------------------------------
 
 
 def _to_discs(dx: Floats, dy: Floats, x: Floats, y: Floats, radius: Floats) -> tuple[Floats, Floats]:
-    """Distances along rays into and out of discs at (x, y) from their starts; inf, -inf where they pass by."""
+    """Distances along rays into and out of discs at (x, y) off their starts; inf, -inf: they pass by or lead away."""
     along, across = dx * x + dy * y, np.abs(dx * y - dy * x)
     square = (radius - across) * (radius + across)
     half = np.sqrt(np.where(square >= 0, square, 0.0))
-    met = across <= radius
+    met = (across <= radius) & ((along > 0) | (x * x + y * y < radius * radius))
     return np.where(met, along - half, np.inf), np.where(met, along + half, -np.inf)
 
 
@@ -489,10 +508,12 @@ def _fan_intervals(fan: Fan, pose: Pose, area: _Area) -> tuple[Ints, Ints, Ints]
     x, y, radius = area.discs[0] - pose.x, area.discs[1] - pose.y, area.discs[2]
     half = _half_angle(np.hypot(x, y), radius)
     ends_x, ends_y = area.edges[::2] - pose.x, area.edges[1::2] - pose.y
-    front = np.flatnonzero(ends_x[0] * ends_y[1] - ends_x[1] * ends_y[0] < 0)
+    side = ends_x[0] * ends_y[1] - ends_x[1] * ends_y[0]
+    front = np.flatnonzero(side <= 0)
     angle = np.arctan2(ends_y[:, front], ends_x[:, front])
     low = np.concatenate([np.arctan2(y, x) - half, angle[1]])
     wide = np.concatenate([2 * half, np.mod(angle[0] - angle[1], math.tau)])
+    wide[half.size :][side[front] == 0] = math.tau
     low = np.mod(low - (pose.theta + fan.first + SLACK), math.tau)
     first = np.searchsorted(fan.turned, low)
     last = np.searchsorted(fan.turned, low + (wide + 2 * SLACK), side="right")
@@ -513,8 +534,8 @@ def _fan_hits(fan: Fan, pose: Pose, area: _Area, front: Ints, which: Ints, beam:
     split = int(np.searchsorted(which, rounds))
     disc, edge = which[:split], front[which[split:] - rounds]
     x, y, radius = area.discs[:, disc]
-    enter, leave = _to_discs(dx[:split], dy[:split], x - pose.x, y - pose.y, radius)
-    enter = np.where(leave > 0, np.where(enter > 0, enter, 0.0), np.inf)
+    enter, _ = _to_discs(dx[:split], dy[:split], x - pose.x, y - pose.y, radius)
+    enter = np.where(enter > 0, enter, 0.0)
     ax, ay, bx, by = area.edges[:, edge]
     at = _to_edges(dx[split:], dy[split:], ax - pose.x, ay - pose.y, bx - pose.x, by - pose.y)
     return np.concatenate([enter, at]), np.concatenate([area.disc_thing[disc], area.edge_thing[edge]])
@@ -572,12 +593,12 @@ def _any_hits(rays: Rays, x: float, y: float, spread: float, area: _Area) -> tup
     disc, edge = which[:split], which[split:] - area.disc_thing.size
     start_x, start_y = rays.x[ray], rays.y[ray]
     to_x, to_y, radius = area.discs[:, disc]
-    enter, leave = _to_discs(dx[:split], dy[:split], to_x - start_x[:split], to_y - start_y[:split], radius)
-    enter = np.where(leave > 0, np.where(enter > 0, enter, 0.0), np.inf)
+    enter, _ = _to_discs(dx[:split], dy[:split], to_x - start_x[:split], to_y - start_y[:split], radius)
+    enter = np.where(enter > 0, enter, 0.0)
     start_x, start_y = start_x[split:], start_y[split:]
     ax, ay, bx, by = area.edges[:, edge]
     ax, ay, bx, by = ax - start_x, ay - start_y, bx - start_x, by - start_y
-    at = np.where(ax * by - bx * ay < 0, _to_edges(dx[split:], dy[split:], ax, ay, bx, by), np.inf)
+    at = np.where(ax * by - bx * ay <= 0, _to_edges(dx[split:], dy[split:], ax, ay, bx, by), np.inf)
     return ray, np.concatenate([enter, at]), np.concatenate([area.disc_thing[disc], area.edge_thing[edge]])
 
 

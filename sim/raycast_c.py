@@ -93,12 +93,13 @@ def order_of(cos: Array, sin: Array) -> tuple[Array, Array]:
 @functools.cache
 def loops() -> Loops | None:
     """The compiled loops; None where they cannot be had."""
-    return compiled(_cache()) if np.dtype(np.intp).itemsize == 8 else None
+    return compiled() if np.dtype(np.intp).itemsize == 8 else None
 
 
-def compiled(folder: Path) -> Loops | None:
-    """The loops from a library in `folder`, compiled if it is not there."""
+def compiled(folder: Path | None = None) -> Loops | None:
+    """The loops from a library in `folder` (by default the user's cache), compiled if it is not there."""
     try:
+        folder = _cache() if folder is None else folder
         source = SOURCE.read_text(encoding="ascii")
         key = hashlib.sha256("\n".join((*FLAGS, source)).encode()).hexdigest()[:32]
         path = folder / f"rays-{key}.so"

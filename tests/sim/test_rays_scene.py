@@ -72,6 +72,42 @@ def test_a_start_in_a_low_thing_sees_what_is_higher(loops):
     assert cast(Rays(*np.array([[0, 0], [0, 0], [0, 0], [0.2, 0.3]], dtype=float)), 5.0, scene)[0].tolist() == [0, 2.5]
 
 
+# --- rims -----------------------------------------------------------------------------------------
+
+
+@BOTH
+@pytest.mark.parametrize("shape", [box(2.0, 2.0), YARD.rings[0], Circle(1.0)], ids=["box", "rings", "disc"])
+@pytest.mark.parametrize("still", [True, False])
+def test_a_start_on_a_rim_meets_the_thing_where_the_ray_leads_in_and_not_where_it_leads_away(loops, shape, still):
+    thing = Rings((tuple((x / 3, y / 3) for x, y in shape),)) if isinstance(shape, tuple) else shape
+    scene = Scene([thing], [Pose(0, 0) if still else Pose(9, 9)], [1.0], loops)
+    scene.place(0, Pose(0, 0))
+    for x, y in ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)):
+        out = math.atan2(y, x)
+        angles = out + np.array([0.0, 1.0, -1.0, math.pi, math.pi - 1.0, math.pi + 1.0])
+        away = np.array([True] * 3 + [False] * 3)
+        ranges, _ = cast(Rays(np.full(6, x), np.full(6, y), angles, np.zeros(6)), 5.0, scene)
+        assert ((ranges == 5.0) == away).all()
+        assert (ranges[~away] < 1e-12).all()
+        one = [sweep(Fan(np.array([angle])), Pose(x, y), 0.0, 5.0, scene)[0] for angle in angles]
+        assert ((np.array(one) == 5.0) == away).all()
+
+
+@BOTH
+@pytest.mark.parametrize("many", [1000, 0])
+def test_edges_through_the_very_middle_of_a_cell_leave_no_doubt_where_a_start_lies(monkeypatch, loops, many):
+    monkeypatch.setattr(raycast, "MANY", many)
+    for x, y in ((0.5, 1.5), (0.5, 0.5), (-0.5, 0.5), (1.0, 0.5)):  # with 8 m the middle of the cell is (0.5, 0.5)
+        outline = ((x - 1, y - 1), (x, y - 1), (x, y), (x - 1, y))
+        for turned in (outline, tuple((b, a) for a, b in reversed(outline))):
+            scene = Scene([Rings((turned,)), YARD], [Pose(0, 0), Pose(20, 0)], [1.0] * 2, loops)
+            low, high = np.array(turned).min(axis=0), np.array(turned).max(axis=0)
+            for at in np.random.default_rng(1).uniform(0, 1, (40, 2)):
+                inside = bool(((low < at) & (at < high)).all())
+                assert (sweep(FAN, Pose(*at), 0.0, 8.0, scene) == 0).all() == inside
+                assert (cast(ray(tuple(at), 0.3), 8.0, scene)[0][0] == 0) == inside
+
+
 # --- corners --------------------------------------------------------------------------------------
 
 
