@@ -93,7 +93,8 @@ def test_every_combination_is_a_row_in_the_order_in_which_it_was_asked_for(at_on
 
 
 def test_the_summary_has_a_line_for_each_variant(at_once: None, tmp_path: Path) -> None:
-    out = sweep(ROOM, "--param", "runaway.release=0.1m,0.2m", "-o", str(tmp_path / "rows.csv")).stdout.splitlines()
+    given = ("--param", "runaway.release=0.1m,0.2m", "--until", "2")
+    out = sweep(ROOM, *given, "-o", str(tmp_path / "rows.csv")).stdout.splitlines()
     assert out[2].split()[:3] == ["scenario", "runaway.release", "n"]
     assert out[3].split() == ["visit", "0.1", "10", "0.0", "%", "0.0", "…", "27.8", "-", "-", "-", "0", "0"]
     assert out[4].split()[:3] == ["visit", "0.2", "10"]
@@ -188,19 +189,19 @@ def test_a_sweep_that_is_stopped_says_what_is_there_and_goes_on(
 ) -> None:
     output, whole = tmp_path / "rows.csv", tmp_path / "whole.csv"
     stop_after(3, monkeypatch)
-    stopped = sweep(ROOM, "--seeds", "0..7", "-o", str(output))
+    stopped = sweep(ROOM, "--until", "3", "--seeds", "0..7", "-o", str(output))
     assert stopped.exit_code == 1
     assert "make-room: 3 of 8 episodes: 0 done, 3 not done" in stopped.stdout
     assert f"stopped by hand; the rows are in {output}.jsonl, and --resume continues" in stopped.stdout
     assert not output.exists()
-    again = sweep(ROOM, "--seeds", "0..7", "--resume", "--json", "-o", str(output))
+    again = sweep(ROOM, "--until", "3", "--seeds", "0..7", "--resume", "--json", "-o", str(output))
     assert json.loads(again.stdout)["output"] == f"{output}.jsonl"
     assert (json.loads(again.stdout)["resumed"], json.loads(again.stdout)["rows"]) == (3, 6)
     monkeypatch.setattr(processes, "run", here)
-    ended = sweep(ROOM, "--seeds", "0..7", "--resume", "-o", str(output))
+    ended = sweep(ROOM, "--until", "3", "--seeds", "0..7", "--resume", "-o", str(output))
     assert (ended.exit_code, Path(f"{output}.jsonl").exists()) == (0, False)
     assert "8 of 8 episodes, 6 of them before: " in ended.stdout
-    sweep(ROOM, "--seeds", "0..7", "-o", str(whole))
+    sweep(ROOM, "--until", "3", "--seeds", "0..7", "-o", str(whole))
     assert table(output) == table(whole)
 
 
@@ -328,11 +329,17 @@ def test_a_scenario_that_cannot_be_read_is_told(tmp_path: Path, monkeypatch: pyt
     assert (result.exit_code, result.stderr.splitlines()[-1].endswith("visit.yaml: Permission denied")) == (2, True)
 
 
-def test_a_table_that_cannot_be_written_is_told_and_its_rows_are_kept(at_once: None, tmp_path: Path) -> None:
-    (tmp_path / "rows.csv").mkdir()
-    (tmp_path / "rows.csv" / "x").touch()
+def test_a_table_that_cannot_be_written_is_told_and_its_rows_are_kept(
+    at_once: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(path: Path, work: Work, rows: list[Row]) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(command, "write", full)
     result = sweep(ROOM, "--until", "1", "-o", str(tmp_path / "rows.csv"))
     assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr == f"error: {tmp_path / 'rows.csv'}: No space left on device\n"
+    assert len((tmp_path / "rows.csv.jsonl").read_text().splitlines()) == 10
 
 
 @pytest.mark.parametrize(

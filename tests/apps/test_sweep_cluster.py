@@ -122,3 +122,24 @@ def test_a_task_is_run_by_the_plan_that_its_worker_has(some: Work, monkeypatch: 
     assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
     station.teardown(None)
     assert signal.getsignal(signal.SIGINT) is before
+
+
+def future(error: Exception | None) -> SimpleNamespace:
+    return SimpleNamespace(exception=lambda: error)
+
+
+def test_what_a_worker_raises_that_is_no_episode_ends_the_sweep() -> None:
+    with pytest.raises(EngineError, match="a worker cannot run an episode: ModuleNotFoundError: no rplan"):
+        cluster.result_of(future(ModuleNotFoundError("no rplan")))
+
+
+def test_a_cluster_that_goes_away_ends_the_sweep(some: Work, monkeypatch: pytest.MonkeyPatch) -> None:
+    def gone(*_: object, pure: bool) -> None:
+        raise distributed.CancelledError("scheduler-connection-lost")
+
+    def client(*_: object) -> SimpleNamespace:
+        return SimpleNamespace(register_plugin=lambda plugin: None, nthreads=lambda: {"a": 1}, submit=gone)
+
+    monkeypatch.setattr(cluster, "_client", client)
+    with pytest.raises(EngineError, match="the dask scheduler is gone: scheduler-connection-lost"):
+        list(run(some, tasks(some, SEEDS), 1, "tcp://x:1"))

@@ -19,7 +19,7 @@ from typing import Any
 
 import dask
 import distributed
-from distributed import KilledWorker, WorkerPlugin, get_worker
+from distributed import CancelledError, KilledWorker, WorkerPlugin, get_worker
 
 from rplan.apps.sweep.processes import MOST_DEATHS, EngineError, deaf_to_interrupts, died
 from rplan.apps.sweep.work import Row, Rows, Runner, Task, Work
@@ -78,7 +78,10 @@ def run(work: Work, tasks: Iterable[Task], workers: int, address: str | None = N
         except Exception as error:
             raise EngineError(f"a worker cannot begin: {error}") from error
         opened.callback(_leave, client, station.name)
-        yield from _rows(client, station, work, iter(tasks))
+        try:
+            yield from _rows(client, station, work, iter(tasks))
+        except (CancelledError, OSError) as error:
+            raise EngineError(f"the dask scheduler is gone: {error}") from error
 
 
 def _client(opened: ExitStack, workers: int, address: str | None) -> Any:
@@ -119,7 +122,7 @@ def _rows(client: Any, station: Station, work: Work, tasks: Iterator[Task]) -> R
     waiting = UNTYPED.as_completed(ask(islice(tasks, AHEAD * sum(client.nthreads().values()))))
     for future in waiting:
         task = asked.pop(future.key)
-        result = _row(future)
+        result = result_of(future)
         if result is None:
             blamed.append(task)
         else:
@@ -127,10 +130,10 @@ def _rows(client: Any, station: Station, work: Work, tasks: Iterator[Task]) -> R
         for another in ask(islice(tasks, 1)):
             waiting.add(another)
     for task in blamed:
-        yield task, _row(client.submit(row, station.name, task, pure=False)) or died(work, task)
+        yield task, result_of(client.submit(row, station.name, task, pure=False)) or died(work, task)
 
 
-def _row(future: Any) -> Row | None:
+def result_of(future: Any) -> Row | None:
     """The row of a task; None where its workers ended."""
     error = future.exception()
     match error:

@@ -99,12 +99,11 @@ def median(values: Sequence[float]) -> Median:
 
 def _rank(count: int) -> int:
     """The greatest k for which fewer than k of `count` values lie below the true median in 2.5 % of samples at most."""
-    below, rank = 0.0, 0
-    while rank < count:
-        below += math.exp(_log_choose(count, rank) - count * math.log(2))
-        if below > OUTSIDE:
-            break
+    rank = 0
+    below = math.exp(-count * math.log(2))
+    while below <= OUTSIDE:
         rank += 1
+        below += math.exp(_log_choose(count, rank) - count * math.log(2))
     return rank
 
 
