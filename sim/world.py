@@ -160,7 +160,7 @@ class World:
         if self._things.stir():
             return False
         most = max(abs(self.robot.speed), self.robot.build.max_speed)
-        need = most * self.period + self._things.fastest() * self.period + MARGIN
+        need = most * (self.period + self.period / self._substeps) + self._things.fastest() * self.period + MARGIN
         if self._room < need:
             self._room = self._distance_around()
         return self._room >= need and not self._things.near_pushable(self.period)
@@ -210,6 +210,7 @@ class World:
             turn_rate=0.0,
             acceleration=(0.0, 0.0),
             wheels=Drive(0.0, 0.0),
+            aside=0.0,
             still_for=0.0,
             head=self.head.state,
             head_still_for=0.0,
@@ -227,7 +228,7 @@ class World:
         truth, robot = self._truth, self.robot
         truth.tick, truth.time = self.tick, self.time
         truth.pose, truth.speed, truth.turn_rate = robot.pose, robot.speed, robot.turn_rate
-        truth.acceleration, truth.wheels = robot.acceleration, robot.wheels
+        truth.acceleration, truth.wheels, truth.aside = robot.acceleration, robot.wheels, robot.aside
         truth.load, truth.flippers = robot.load, robot.flippers
         still = robot.standing and abs(robot.turn_rate) < 0.01
         truth.still_for = truth.still_for + self.period if still else 0.0
@@ -299,7 +300,7 @@ class _Contacts:
         self._by_shape = {shape: thing for thing in world.things for shape in thing.shapes}
         self._touching: dict[int, Touch] = {}
         self._last: dict[int, Touch] = {}
-        self._bearings: dict[int, float] = {}
+        self._bearings: dict[int, list[float]] = {}
         self.begun: tuple[Touch, ...] = ()
         self.climbing = False
         world._space.on_collision(ROBOT, OTHER, begin=self._begin, pre_solve=self._touch)
@@ -317,13 +318,13 @@ class _Contacts:
     @property
     def bearings(self) -> tuple[float, ...]:
         """Of the contacts [rad, robot frame]."""
-        return tuple(self._bearings.values())
+        return tuple(bearing for bearings in self._bearings.values() for bearing in bearings)
 
     def _begin(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: object) -> None:
         thing, normal = self._by_shape[arbiter.shapes[1]], arbiter.normal
         if self._is_climbed(thing):
             return
-        towards = self._world.robot.body.velocity.dot(normal)
+        towards = normal.dot(self._world.robot.asked)
         against = -thing.body.velocity.dot(normal)
         touch = Touch(thing.placed.id, self._world.time, towards > max(TOUCH_SPEED, against))
         self._last[thing.index] = touch
@@ -339,11 +340,9 @@ class _Contacts:
         if thing.index not in self._last:
             self._begin(arbiter, _space, _data)
         self._touching[thing.index] = self._last[thing.index]
-        points = arbiter.contact_point_set.points
-        if points:
-            body = self._world.robot.body
-            here = Pose(body.position.x, body.position.y, wrap(body.angle))
-            self._bearings[thing.index] = bearing(here, points[0].point_a)
+        body = self._world.robot.body
+        here = Pose(body.position.x, body.position.y, wrap(body.angle))
+        self._bearings[thing.index] = [bearing(here, place) for place in _places(arbiter)]
 
     def _is_climbed(self, thing: Thing) -> bool:
         return thing.placed.height <= self._world.robot.climbs()
@@ -424,6 +423,15 @@ def _outline_points(robot: Robot) -> tuple[Vec2, ...] | None:
             return tuple(points)
         case Circle() | _:
             return None
+
+
+def _places(arbiter: pymunk.Arbiter) -> list[Vec2]:
+    """Where hulls meet: the points of contact and, where they meet along a side, its middle."""
+    places = [(point.point_a.x, point.point_a.y) for point in arbiter.contact_point_set.points]
+    if len(places) > 1:
+        (ax, ay), (bx, by) = places[0], places[-1]
+        places.append(((ax + bx) / 2, (ay + by) / 2))
+    return places
 
 
 def _movers(thing: Thing) -> tuple[Mover, ...]:

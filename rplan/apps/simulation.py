@@ -78,10 +78,22 @@ class Run:
         return self.verdict.duration / self.wall if self.wall > 0 else float("inf")
 
 
+SCENARIO_SUFFIXES = (".yaml", ".yml")
+
+
 def load_world(path: Path) -> World:
-    """The scenario in a file; `ScenarioError`, `OSError`."""
-    text = path.read_bytes().decode("utf-8", errors="replace")
-    return World(loads(text, path.name), text)
+    """The scenario in a file, or the world of another format in it (FILE#3: one of several).
+
+    Raises ScenarioError, WorldFileError, OSError.
+    """
+    if path.suffix.lower() in SCENARIO_SUFFIXES:
+        text = path.read_bytes().decode("utf-8", errors="replace")
+        if not ("resolution:" in text and "image:" in text):
+            return World(loads(text, path.name), text)
+    from sim.scenarios.importers import Options, load, split
+
+    file, number = split(str(path))
+    return World(*load(file, Options(world=number)))
 
 
 @dataclass(slots=True)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import math
 import sys
-from dataclasses import fields, replace
+from dataclasses import asdict, fields, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -81,6 +81,7 @@ from sim.sensors.build import (
     SonarBuild,
     StereoBuild,
 )
+from sim.sensors.faults import wrong_fault
 from sim.sensors.weather import Weather
 from sim.things.ground import Ground, Slope
 from sim.things.thing import (
@@ -484,9 +485,15 @@ def _sensor(kind: str) -> Spec[Installed]:
     def make(name: str, at: Pose, height: float, latency: float, period: float = 0.0, **build: Any) -> Installed:
         if "period" in own:
             build, period = {**build, "period": period}, 0.0
+        _check_ranges(build)
         return Installed(name, type(sample)(**build), _mount(at, height), period, latency)
 
     return record(make, **(common | own))
+
+
+def _check_ranges(build: dict[str, Any]) -> None:
+    if "min_range" in build and build["min_range"] >= build["max_range"]:
+        raise ValueError("min_range must be less than max_range")
 
 
 def _sensors(report: Report, node: yaml.Node, path: str) -> tuple[Installed, ...] | Wrong:
@@ -540,6 +547,8 @@ def _robot(
         base.build.mass if mass is None else mass,
         base.build.height if height is None else height,
     )
+    if isinstance(build.drive, Synchro) and not isinstance(hull, Circle):
+        raise ValueError("a synchro drive has a round hull: it does not turn with the steering")
     carried = sensors if sensors is not None else () if own else base.sensors
     for kind in BUILDS:
         if rest[kind] is not None:
@@ -561,6 +570,7 @@ def _changed(sensors: tuple[Installed, ...], kind: str, changes: dict[str, Any])
     if not places:
         raise ValueError(f"this robot carries no {kind}: name it under 'sensors'")
     changed = replace(sensors[places[0]], build=replace(sensors[places[0]].build, **changes))
+    _check_ranges(asdict(changed.build))
     return (*sensors[: places[0]], changed, *sensors[places[0] + 1 :])
 
 
@@ -687,6 +697,8 @@ def _whole(report: Report, node: yaml.Node, path: str) -> Scenario | Wrong:
         if fault.sensor not in sensors:
             message = f"the robot has no sensor {fault.sensor!r}; {did_you_mean(fault.sensor, sensors)}"
             report.wrong(_part(node, "faults", index), f"faults[{index}].sensor", message)
+        elif message := wrong_fault(fault, scenario.robot.sensors):
+            report.wrong(_part(node, "faults", index), f"faults[{index}]", message)
     things = [thing.id for thing in scenario.things if thing.id] + (["donor"] if scenario.donor else [])
     for index, event in enumerate(scenario.events):
         match event.what:

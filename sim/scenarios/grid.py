@@ -30,7 +30,7 @@ Bools = NDArray[np.bool_]
 Ints = NDArray[np.int64]
 
 MOST_CELLS = 100_000_000
-MOST_CORNERS = 2_000_000
+MOST_CORNERS = 500_000
 """Grids with more corners than this are noise, not maps."""
 
 TOLERANCE = 0.75
@@ -43,7 +43,7 @@ APART = 0.1
 """The least distance [cells] between pieces of simplified rings that are not neighbours."""
 
 BUCKET = 4.0  # [cells] side of the squares by which near pieces are found
-PATIENCE = 12  # rounds after which all points of pieces in conflict are taken back at once
+PATIENCE = 6  # rounds after which all points of pieces in conflict are taken back at once
 
 
 class GridError(ValueError):
@@ -115,8 +115,6 @@ LEAVES_SIDEWAYS = {NE, SW, SW | SE | NE, NE | NW | SW, SW | NE}
 def _boundary(occupied: Bools) -> tuple[Floats, Ints]:
     """Corners [cells, from the lower left] of all rings, one ring after the other, and which ring each belongs to."""
     rows, columns, pattern = _corners(occupied)
-    if len(rows) > MOST_CORNERS:
-        raise GridError(f"the grid has more than {MOST_CORNERS:,} corners: this is noise, not a map")
     rows, columns, pattern, second = _split_pinches(rows, columns, pattern)
     sideways = np.isin(pattern, list(LEAVES_SIDEWAYS))
     along_row = _partners(rows, columns, second)
@@ -138,7 +136,10 @@ def _corners(occupied: Bools) -> tuple[Ints, Ints, Ints]:
     code |= padded[1:, 1:] * np.uint8(NE)
     turns = np.ones(16, dtype=np.bool_)
     turns[[0, SW | SE, NW | NE, SW | NW, SE | NE, 15]] = False
-    at = np.flatnonzero(turns[code])
+    turning = turns[code]
+    if np.count_nonzero(turning) > MOST_CORNERS:
+        raise GridError(f"the grid has more than {MOST_CORNERS:,} corners: this is noise, not a map")
+    at = np.flatnonzero(turning)
     return at // (columns + 1), at % (columns + 1), code.ravel()[at].astype(np.int64)
 
 
@@ -287,19 +288,24 @@ def _to_segment(point: Floats, a: Floats, b: Floats) -> Floats:
 
 def _keep_apart(chains: _Chains) -> None:
     """Take back points wherever a simplified piece comes too near to another one, until none does."""
+    new = np.ones(len(chains.points), dtype=np.bool_)  # by its first point: which pieces were not looked at yet
     for number in range(10 * PATIENCE):
         first, last = chains.ends()
         loose = last - first > 1
-        one, other = _near_pairs(chains.points[first], chains.points[last], loose)
-        bad = _too_near(chains, first, last, one, other)
+        start, end = chains.points[first], chains.points[last]
+        one, other = _near_boxes(start, end, *_near_pairs(start, end, loose, new[first]))
+        bad = _too_near(start[one], end[one], start[other], end[other])
         wrong = np.unique(np.concatenate([one[bad], other[bad]]))
         wrong = wrong[loose[wrong]]
         if not len(wrong):
             return
+        before = chains.kept.copy()
         if number < PATIENCE:
             _split_all(chains, first[wrong], last[wrong], -1.0)
         else:
             _restore(chains, first[wrong], last[wrong])
+        new = chains.kept & ~before
+        new[first[wrong]] = True
 
 
 def _restore(chains: _Chains, first: Ints, last: Ints) -> None:
@@ -309,20 +315,20 @@ def _restore(chains: _Chains, first: Ints, last: Ints) -> None:
     chains.kept[np.arange(len(piece)) - starts[piece] + first[piece]] = True
 
 
-def _near_pairs(a: Floats, b: Floats, loose: Bools) -> tuple[Ints, Ints]:
-    """Pairs of segments, one of them loose at least, that share a square of the plane; a pair may come twice."""
+def _near_pairs(a: Floats, b: Floats, loose: Bools, fresh: Bools) -> tuple[Ints, Ints]:
+    """Pairs of segments, one of them loose and one new, that share a square of the plane; a pair may come twice."""
     keys, segment = _buckets(a, b)
     order = np.lexsort((segment, keys))
     keys, segment = keys[order], segment[order]
-    new = np.append(True, (np.diff(keys) != 0) | (np.diff(segment) != 0))
-    keys, segment = keys[new], segment[new]
+    once = np.append(True, (np.diff(keys) != 0) | (np.diff(segment) != 0))
+    keys, segment = keys[once], segment[once]
     ones: list[Ints] = []
     others: list[Ints] = []
     step, alive = 1, np.arange(len(keys))
     while len(alive := alive[alive + step < len(keys)]):
         alive = alive[keys[alive] == keys[alive + step]]
         one, other = segment[alive], segment[alive + step]
-        wanted = loose[one] | loose[other]
+        wanted = (loose[one] | loose[other]) & (fresh[one] | fresh[other])
         ones.append(one[wanted])
         others.append(other[wanted])
         step += 1
@@ -344,10 +350,18 @@ def _buckets(a: Floats, b: Floats) -> tuple[Ints, Ints]:
     return np.concatenate(corners), np.tile(segment, 4)
 
 
-def _too_near(chains: _Chains, first: Ints, last: Ints, one: Ints, other: Ints) -> Bools:
-    """Which pairs of segments that are no neighbours on a ring cross or come nearer than APART."""
-    a, b = chains.points[first[one]], chains.points[last[one]]
-    c, d = chains.points[first[other]], chains.points[last[other]]
+def _near_boxes(start: Floats, end: Floats, one: Ints, other: Ints) -> tuple[Ints, Ints]:
+    """Only those pairs whose bounding boxes come nearer than APART."""
+    low, high = np.minimum(start, end) - APART / 2, np.maximum(start, end) + APART / 2
+    near = np.ones(len(one), dtype=np.bool_)
+    for axis in (0, 1):
+        near &= low[one, axis] <= high[other, axis]
+        near &= low[other, axis] <= high[one, axis]
+    return one[near], other[near]
+
+
+def _too_near(a: Floats, b: Floats, c: Floats, d: Floats) -> Bools:
+    """Which pairs of segments a b and c d that are no neighbours on a ring cross or come nearer than APART."""
     joined = (a == d).all(axis=1) | (b == c).all(axis=1)
     near = np.minimum(
         np.minimum(_to_segment(a, c, d), _to_segment(b, c, d)), np.minimum(_to_segment(c, a, b), _to_segment(d, a, b))

@@ -54,9 +54,10 @@ def lay_out(scenario: Scenario, chance: Generator) -> Layout:
     for spec in scenario.things:
         there, heading = chance.random() < spec.present, _drawn(spec.heading, chance)
         if there:
-            things.append(_placed(spec, spec.at, heading, things))
+            things.append(_placed(spec, spec.at, heading))
     for scatter in scenario.scatter:
         things += _scattered(scatter, scenario, things, chance)
+    things = _named(things)
     _check_start(scenario, things)
     changing = {event.what.thing for event in scenario.events if not isinstance(event.what, Change)}
     return Layout(start, tuple(replace(thing, changes=thing.id in changing) for thing in things))
@@ -93,11 +94,22 @@ def _donor(spec: DonorSpec) -> Placed:
     return Placed(DONOR, DONOR, Circle(spec.radius), Pose(*spec.at, 0.0), spec.height, motion=spec.move)
 
 
-def _placed(spec: ThingSpec, at: Vec2, heading: float, before: list[Placed]) -> Placed:
-    taken = [thing.id for thing in before]
-    free = (name for number in count(1) if (name := f"{spec.kind}-{number}") not in taken)
-    name = spec.id or next(free)
-    return Placed(name, spec.kind, spec.outline, Pose(*at, wrap(heading)), spec.height, spec.mass, spec.motion)
+def _placed(spec: ThingSpec, at: Vec2, heading: float) -> Placed:
+    return Placed(spec.id, spec.kind, spec.outline, Pose(*at, wrap(heading)), spec.height, spec.mass, spec.motion)
+
+
+def _named(things: list[Placed]) -> list[Placed]:
+    """Those without a name get their kind and the next number that is free."""
+    taken = {thing.id for thing in things}
+    numbers: dict[str, Iterator[int]] = {}
+    named = []
+    for thing in things:
+        if not thing.id:
+            free = numbers.setdefault(thing.kind, count(1))
+            name = next(name for number in free if (name := f"{thing.kind}-{number}") not in taken)
+            thing = replace(thing, id=name)
+        named.append(thing)
+    return named
 
 
 def _scattered(scatter: Scatter, scenario: Scenario, before: list[Placed], chance: Generator) -> list[Placed]:
@@ -125,7 +137,7 @@ def _one(scatter: Scatter, strips: list[Strip], others: list[Placed], chance: Ge
         if all(distance_to_segment(at, a, b) >= by + radius for a, b, by in strips) and all(
             distance(at, other.outline, other.pose) - radius >= scatter.min_gap for other in others
         ):
-            return _placed(spec, at, 0.0, others)
+            return _placed(spec, at, 0.0)
     return None
 
 

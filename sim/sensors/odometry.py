@@ -47,6 +47,9 @@ class WheelOdometry:
         heading = self._theta + turn / 2
         self._x += way * math.cos(heading)
         self._y += way * math.sin(heading)
+        if truth.aside:
+            side = self._scale * truth.aside * dt
+            self._x, self._y = self._x - side * math.sin(heading), self._y + side * math.cos(heading)
         self._theta, self._true = wrap(self._theta + turn), true
         self._speed, self._turn_rate = way / dt, turn / dt
 

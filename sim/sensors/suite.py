@@ -16,7 +16,7 @@ from typing import Any
 
 from behaviours.interface import NO_OTHERS, FlipperState, HeadState, Pose, Reading, Sensed
 from sim.noise import named_chance, sensor_chance
-from sim.robots.build import Build
+from sim.robots.build import Build, SkidSteer
 from sim.sensors import compass, gps, inclinometer, lidar, sonar
 from sim.sensors.build import (
     BumperBuild,
@@ -70,6 +70,9 @@ class Suite:
                 self._sensors.append((sensor, made.fields))
             taken += made.fields
 
+        self._has_head = any(isinstance(spec.build, InfraredBuild | StereoBuild) for spec in carried)
+        self._has_flippers = isinstance(build.drive, SkidSteer)
+
     def update(self, truth: Truth) -> None:
         """Let pass what adds up and what is filtered; once after each tick of the world."""
         for update in self._updates:
@@ -80,12 +83,14 @@ class Suite:
         said: dict[str, Any] = {}
         for sensor, fields in self._sensors:
             said.update(zip(fields, sensor.sense(truth) or (), strict=False))
-        head, flippers = truth.head, truth.flippers
+        if self._has_head:
+            head = truth.head
+            said["head"] = HeadState(head.pan, head.tilt, head.settled, truth.time)
+        if self._has_flippers:
+            said["flippers"] = FlipperState(truth.flippers.angle, truth.flippers.deployed, truth.time)
         return Reading(
             truth.time,
             truth.tick,
-            head=HeadState(head.pan, head.tilt, head.settled, truth.time),
-            flippers=FlipperState(flippers.angle, flippers.deployed, truth.time),
             object_on_board=object_on_board,
             others=self._said_by_others(truth) if self._others else NO_OTHERS,
             **said,

@@ -19,7 +19,8 @@ class Truth:
     """The state of the world at `time` [s], `dt` [s] after the tick before.
 
     pose, speed [m/s] along x, turn_rate [rad/s], acceleration [m/s^2, robot frame]: of the hull. wheels: the motion
-    that wheels or tracks made of it in this tick, slip included. still_for, head_still_for [s]: how long base and head
+    that wheels or tracks made of it in this tick, slip included; aside [m/s]: what of it leads to the left, as the
+    wheels know it. still_for, head_still_for [s]: how long base and head
     have not moved. load: what the motors draw. touched: bearings [rad, robot frame] of contacts. beacon: place of the
     donor's beacon, `donor` the index of the thing that carries it (None, -1 without a donor). scene: the outlines of
     things as they are now, brought up to date when it is asked for.
@@ -33,6 +34,7 @@ class Truth:
     turn_rate: float
     acceleration: Vec2
     wheels: Drive
+    aside: float
     still_for: float
     head: HeadState
     head_still_for: float

@@ -163,7 +163,7 @@ def test_header_and_snapshots_are_json_and_small():
     episode = Episode(LOT, 1)
     episode.run(Wandering(), 15, keeping)
     header = json.loads(json.dumps(episode.header(), allow_nan=False))
-    assert header["robot"] == {"radius": 0.35}
+    assert header["robot"] == {"radius": 0.35, "shape": {"circle": 0.35}, "height": 1.2}
     assert header["donor"]["pose"] == [7.62, 0.0, 0.0]
     assert [mover["id"] for mover in header["movers"]][:4] == ["donor", "driving-car", "walker", "rolled-trashcan"]
     assert {"wall-1", "parked-car-7"} & {thing["id"] for thing in header["things"]}

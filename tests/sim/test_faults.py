@@ -65,6 +65,7 @@ def at(tick: int) -> Truth:
         turn_rate=0.02 + 0.001 * tick,
         acceleration=(0.1 * tick, 0.0),
         wheels=Drive(0.1, 0.02),
+        aside=0.0,
         still_for=time,
         head=HeadState(0.0, 0.1, True),
         head_still_for=time,

@@ -61,6 +61,7 @@ def at(tick: int = 0, scene: Scene = NOTHING, pose: Pose = ORIGIN, **more: Any) 
         turn_rate=0.0,
         acceleration=(0.0, 0.0),
         wheels=Drive(0.0, 0.0),
+        aside=0.0,
         still_for=time,
         head=HeadState(0.0, 0.0, True),
         head_still_for=time,

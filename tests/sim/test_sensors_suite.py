@@ -24,7 +24,7 @@ from behaviours.interface import (
 )
 from sim.noise import chance, named_chance, sensor_chance
 from sim.raycast import Circle, Rays, Scene, box, cast
-from sim.robots.build import Build
+from sim.robots.build import Build, SkidSteer
 from sim.scenarios.format import loads
 from sim.sensors.build import (
     BumperBuild,
@@ -72,6 +72,7 @@ def at(tick: int = 0, scene: Scene = NOTHING, pose: Pose = ORIGIN, dt: float = 0
         turn_rate=0.0,
         acceleration=(0.0, 0.0),
         wheels=Drive(0.0, 0.0),
+        aside=0.0,
         still_for=time,
         head=HeadState(0.0, 0.4, True),
         head_still_for=time,
@@ -242,10 +243,13 @@ def test_a_robot_without_sensors_has_perfect_odometry_and_nothing_else():
 
 def test_head_and_flippers_are_as_they_are_and_stamped():
     state = {"head": HeadState(0.3, 0.2, False), "flippers": FlipperState(0.5, True)}
-    reading = suite().sense(at(7, **state), False)
+    robot = Suite((Installed("ir", InfraredBuild()),), (), Build(drive=SkidSteer()), ORIGIN, 1)
+    reading = robot.sense(at(7, **state), False)
     assert reading.head == HeadState(0.3, 0.2, False, reading.stamp)
     assert reading.flippers == FlipperState(0.5, True, reading.stamp)
     assert (reading.stamp, reading.tick) == (pytest.approx(0.7), 7)
+    without = suite().sense(at(7, **state), False)
+    assert (without.head, without.flippers) == (None, None)
 
 
 def test_the_second_of_a_kind_goes_to_the_others_under_its_name():

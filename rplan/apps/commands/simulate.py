@@ -24,6 +24,7 @@ from rplan.driver import Compiled
 from rplan.lang.diagnostic import PlanError
 from sim.recording import read
 from sim.replay import write_replay
+from sim.scenarios.importers.imported import WorldFileError
 from sim.scenarios.schema import ScenarioError
 
 NOT_DONE = 1
@@ -33,7 +34,8 @@ NOT_DONE = 1
 @click.argument("plan")
 @click.option(
     "--scenario",
-    help="A YAML file, the name of one beside the plan, or FOLDER/NAME. Default: the only one beside the plan.",
+    help="A YAML file, the name of one beside the plan, FOLDER/NAME, or a world that `rplan import` takes "
+    "(FILE#3: one of several). Default: the only one beside the plan.",
 )
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Everything by chance follows it.")
 @click.option("--until", type=click.FloatRange(0, 1e6, min_open=True), help="Simulated seconds at most.")
@@ -80,6 +82,8 @@ def _world(path: Path) -> World:
         return load_world(path)
     except ScenarioError as error:
         raise InputError("the scenario is wrong\n" + "\n".join(f"  {p}" for p in error.problems)) from None
+    except WorldFileError as error:
+        raise InputError(str(error)) from None
     except OSError as error:
         unreadable(path, error)
 
