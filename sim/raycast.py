@@ -39,7 +39,7 @@ TINY = 1e-200
 CELLS = 8  # the width of a cell is the reach of its rays over this; a wide cell has so many across
 SHIFT = 0.1  # share of a cell by which the place that stands for it may lie off its middle
 ATTEMPTS, CLEAR = 40, 1e-9  # to find one that no edge comes so near [m]
-MANY = 1000  # still discs and edges from this number on are sorted out by wide cells first
+MANY = 1000  # discs and edges above this number are sorted out by wide cells first, edges of one thing by the line
 KEPT = 64  # areas that are remembered; the oldest goes first
 FEW = 64  # moving things up to this number are not sorted out by distance
 
@@ -185,6 +185,8 @@ class Scene:
         heights: Sequence[float],
         loops: Callable[[], Loops | None] = loops,
     ) -> None:
+        if not len(outlines) == len(poses) == len(heights):
+            raise ValueError(f"{len(outlines)} outlines, {len(poses)} poses and {len(heights)} heights make no scene")
         own = [_edges(outline) for outline in outlines]
         counts = [edges.shape[1] for edges in own]
         self.x = np.array([pose.x for pose in poses], dtype=float)
@@ -546,6 +548,7 @@ def _fan_hits(fan: Fan, pose: Pose, area: _Area, front: Ints, which: Ints, beam:
 
 def cast(rays: Rays, max_range: float, scene: Scene) -> tuple[Floats, Ints]:
     """Distance [m] to the first thing along each ray (`max_range` if there is none) and its index (-1 if none)."""
+    _check(rays)
     if not rays.x.size:
         return np.zeros(0), np.zeros(0, dtype=np.intp)
     x, y, spread = _middle(rays)
@@ -572,6 +575,11 @@ def _cast_arrays(rays: Rays, middle: tuple[float, float, float], max_range: floa
     ranges = np.full(rays.x.shape, max_range)
     np.minimum.at(ranges, ray, at)
     return ranges, _first_things(ranges, ray, at, thing)
+
+
+def _check(rays: Rays) -> None:
+    if not (rays.x.size,) == rays.x.shape == rays.y.shape == rays.angle.shape == rays.height.shape:
+        raise ValueError("x, y, angle and height of rays must be of one length")
 
 
 def _middle(rays: Rays) -> tuple[float, float, float]:
@@ -617,6 +625,7 @@ def _candidates(rays: Rays, x: Floats, y: Floats, size: Floats) -> tuple[Ints, I
 
 def crossings(rays: Rays, max_range: float, scene: Scene) -> Crossings:
     """Every way through a thing, higher than the ray runs, that a ray begins within `max_range` [m]."""
+    _check(rays)
     ray, thing = _ways(rays, max_range, scene)
     dx, dy = np.cos(rays.angle)[ray], np.sin(rays.angle)[ray]
     disc = scene.round[thing]
@@ -632,6 +641,8 @@ def crossings(rays: Rays, max_range: float, scene: Scene) -> Crossings:
 
 def _ways(rays: Rays, max_range: float, scene: Scene) -> tuple[Ints, Ints]:
     """Pairs of a ray and a thing, higher than it runs, whose enclosing circles are in reach."""
+    if not rays.x.size:
+        return np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp)
     x, y, spread = _middle(rays)
     to_x, to_y, size = scene.x - x, scene.y - y, scene.radius + (spread + MARGIN)
     some = np.flatnonzero(np.hypot(to_x, to_y) <= max_range + size)
@@ -643,8 +654,7 @@ def _ways(rays: Rays, max_range: float, scene: Scene) -> tuple[Ints, Ints]:
 
 def _through(rays: Rays, ray: Ints, thing: Ints, dx: Floats, dy: Floats, scene: Scene) -> Crossings:
     """Ways through things of edges, those behind the start among them: on a line as many lead in as out."""
-    first = scene.first_edge[thing]
-    which, edge = _pairs(first, scene.first_edge[thing + 1] - first)
+    which, edge = _crossed(rays.x[ray], rays.y[ray], thing, dx, dy, scene)
     ray, thing, dx, dy = ray[which], thing[which], dx[which], dy[which]
     x, y = rays.x[ray], rays.y[ray]
     ax, ay, bx, by = scene.edges[:, edge]
@@ -656,3 +666,19 @@ def _through(rays: Rays, ray: Ints, thing: Ints, dx: Floats, dy: Floats, scene: 
     order = np.lexsort((at, ray, thing))
     ways_in, ways_out = order[into[order]], order[~into[order]]
     return Crossings(ray[ways_in], thing[ways_in], at[ways_in], at[ways_out])
+
+
+def _crossed(x: Floats, y: Floats, thing: Ints, dx: Floats, dy: Floats, scene: Scene) -> tuple[Ints, Ints]:
+    """Pairs of a line, given with its thing, and an edge of that it may cross; of many edges, only those crossed."""
+    first, last = scene.first_edge[thing], scene.first_edge[thing + 1]
+    many = np.flatnonzero(last - first > MANY)
+    number = last - first
+    number[many] = 0
+    which, edge = _pairs(first, number)
+    for k in many.tolist():
+        ax, ay, bx, by = scene.edges[:, first[k] : last[k]]
+        left_a = dx[k] * (ay - y[k]) - dy[k] * (ax - x[k]) >= 0
+        left_b = dx[k] * (by - y[k]) - dy[k] * (bx - x[k]) >= 0
+        found = first[k] + np.flatnonzero(left_a != left_b)
+        which, edge = np.concatenate([which, np.full(found.size, k)]), np.concatenate([edge, found])
+    return which, edge

@@ -246,3 +246,35 @@ def test_corners_that_are_grazed_leave_no_way_in_without_a_way_out():
     assert met.enter[0] == pytest.approx(2.0)
     assert met.exit[0] == pytest.approx(4.0)
     assert met.thing.tolist() in ([0], [0, 1])
+
+
+def test_things_of_many_edges_are_crossed_as_those_of_few(monkeypatch):
+    chance = np.random.default_rng(8)
+    scene = Scene([outline(chance) for _ in range(30)], [pose(chance, 6) for _ in range(30)], [0.5] * 30)
+    for _ in range(10):
+        rays = Rays(*chance.uniform(-6, 6, (2, 20)), chance.uniform(-9, 9, 20), chance.uniform(0, 0.8, 20))
+        few = crossings(rays, 9.0, scene)
+        with monkeypatch.context() as other:
+            other.setattr(raycast, "MANY", 0)
+            many = crossings(rays, 9.0, scene)
+        for name in ("ray", "thing", "enter", "exit"):
+            assert getattr(few, name).tobytes() == getattr(many, name).tobytes()
+
+
+# --- what makes no sense --------------------------------------------------------------------------
+
+
+def test_no_rays_meet_nothing():
+    rays, scene = Rays(*np.zeros((4, 0))), Scene([Circle(0.5), YARD], [Pose(0, 0)] * 2, [1.0] * 2)
+    assert [array.size for array in cast(rays, 5.0, scene)] == [0, 0]
+    assert crossings(rays, 5.0, scene).ray.size == 0
+
+
+def test_rays_and_scenes_whose_parts_differ_in_number_are_refused():
+    scene = Scene([Circle(0.5)], [Pose(0, 0)], [1.0])
+    rays = Rays(np.zeros(1), np.zeros(1), np.zeros(5), np.zeros(5))
+    for look in (cast, crossings):
+        with pytest.raises(ValueError, match="of one length"):
+            look(rays, 5.0, scene)
+    with pytest.raises(ValueError, match="2 outlines, 1 poses and 1 heights"):
+        Scene([Circle(0.5)] * 2, [Pose(0, 0)], [1.0])
