@@ -27,6 +27,7 @@ from rplan.apps.sweep.work import Row, Rows, Runner, Task, Work
 
 PLANS = Path(__file__).parents[2] / "plans"
 ROOM = str(PLANS / "make_room")
+MAZE = str(Path(__file__).parents[1] / "data" / "imports" / "little_maze.txt")
 LOT = str(PLANS / "find_and_fetch" / "parking_lot.yaml")
 
 
@@ -154,6 +155,29 @@ def test_an_episode_that_fails_is_told_and_exits_with_1(tmp_path: Path, monkeypa
     assert "failed: visit, seed 1: ValueError: [1]\n" in result.stdout
     assert "… and 3 more" in result.stdout
     assert [row["error"] for row in table(tmp_path / "rows.csv")[:2]] == ["", "ValueError: [1]"]
+
+
+def test_worlds_of_other_formats_are_swept_and_changed_like_scenarios(at_once: None, tmp_path: Path) -> None:
+    result = sweep(
+        ROOM, "--scenario", MAZE, "--seeds", "0", "--param", "scenario.time_limit=1,2", "-o", str(tmp_path / "rows.csv")
+    )
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert [row["ticks"] for row in table(tmp_path / "rows.csv")] == ["10", "20"]
+
+
+def test_a_pattern_stands_for_all_scenarios_that_it_fits(at_once: None, tmp_path: Path) -> None:
+    for name in ("b", "c", "a"):
+        (tmp_path / f"{name}.yaml").write_text(Path(LOT).read_text().replace("name: parking lot", f"name: lot {name}"))
+    output = tmp_path / "rows.csv"
+    sweep(ROOM, "--scenario", f"{tmp_path}/?.yaml", "--seeds", "0", "--until", "1", "-o", str(output))
+    assert [row["scenario"] for row in table(output)] == ["lot a", "lot b", "lot c"]
+
+
+def test_a_world_that_cannot_be_imported_is_told(tmp_path: Path) -> None:
+    (tmp_path / "bad.world").write_text("floorplan ( ")
+    result = sweep(ROOM, "--scenario", str(tmp_path / "bad.world"), "-o", str(tmp_path / "rows.csv"))
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.startswith("error: nothing was run\n  bad.world")
 
 
 def test_a_library_in_a_file_goes_to_the_workers(tmp_path: Path) -> None:
@@ -289,6 +313,7 @@ def lines(path: Path, count: int, running: subprocess.Popen[str]) -> Iterator[No
         (("--param", "runaway.releas=1m", "--param", "scenario.x"), "nothing was run\n  --param runaway.releas=1m: "),
         (("--scenario", LOT, "--scenario", LOT), "nothing was run\n  two scenarios are called 'parking lot'"),
         (("--scenario", "moon"), "there is no scenario moon"),
+        (("--scenario", "moons/*.yaml"), "no file fits --scenario moons/*.yaml"),
         (("--until", "nan"), "--until is not a number"),
         (("--scheduler", "tcp://x:1"), "--scheduler is for --engine dask"),
         (("-o", "rows.txt"), "--output rows.txt: expected a name that ends in .parquet or .csv"),

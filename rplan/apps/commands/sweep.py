@@ -26,6 +26,7 @@ from rplan.apps.sweep.processes import EngineError
 from rplan.apps.sweep.rows import Journal, JournalError, journal_of, write
 from rplan.apps.sweep.summary import Group, Median, group
 from rplan.apps.sweep.work import Row, Rows, Task, Work, head, tasks
+from sim.scenarios.importers.imported import WorldFileError
 from sim.scenarios.schema import ScenarioError
 
 MISSED = 1
@@ -77,7 +78,12 @@ def _libraries(context: click.Context, _: click.Parameter, files: tuple[Path, ..
 @click.option(
     "--seeds", "seed_texts", multiple=True, default=("0..9",), show_default=True, help="Such as 0..99 or 3,5."
 )
-@click.option("--scenario", "scenario_texts", multiple=True, help="As in simulate; may be given more than once.")
+@click.option(
+    "--scenario",
+    "scenario_texts",
+    multiple=True,
+    help="As in simulate, or such as '*.yaml'; repeatable.",
+)
 @click.option(
     "--param", "params", multiple=True, help="LIBRARY.PARAMETER=V1,V2 or scenario.KEY=V1,V2; may be repeated."
 )
@@ -130,8 +136,9 @@ def command(
     try:
         chosen = seeds(seed_texts)
         grid = axes(params, compiled, talk.libraries())
-        _check_size(len(chosen), max(1, len(scenario_texts)), *(len(axis.choices) for axis in grid))
-        loaded = [_loaded(scenario_file(text, path)) for text in scenario_texts or (None,)]
+        files = [file for text in scenario_texts or (None,) for file in _files(text, path)]
+        _check_size(len(chosen), len(files), *(len(axis.choices) for axis in grid))
+        loaded = [_loaded(file) for file in files]
         every = variants(loaded, grid, compiled, talk.libraries())
     except GridError as error:
         raise InputError("nothing was run\n" + "\n".join(f"  {problem}" for problem in error.problems)) from None
@@ -172,11 +179,24 @@ def _check_size(*counts: int) -> None:
         raise GridError([f"{math.prod(counts):,} episodes are more than {MOST:,}"])
 
 
+def _files(text: str | None, plan: Path) -> list[Path]:
+    """The scenarios that a text names: one, or those that a pattern fits, in the order of their names."""
+    if text is None or not any(letter in text for letter in "*?["):
+        return [scenario_file(text, plan)]
+    pattern = Path(text)
+    found = sorted(Path(pattern.anchor).glob(str(pattern.relative_to(pattern.anchor))))
+    if not found:
+        raise InputError(f"no file fits --scenario {text}")
+    return [scenario_file(str(name), plan) for name in found]
+
+
 def _loaded(path: Path) -> Loaded:
     try:
         return Loaded(path, load_world(path))
     except ScenarioError as error:
         raise GridError(map(str, error.problems)) from None
+    except WorldFileError as error:
+        raise GridError([str(error)]) from None
     except OSError as error:
         unreadable(path, error)
 

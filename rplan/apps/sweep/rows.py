@@ -19,6 +19,7 @@ Type = Literal["VARCHAR", "BIGINT", "DOUBLE", "BOOLEAN"]
 COLUMNS: Mapping[str, Type] = {
     "scenario": "VARCHAR",
     "seed": "BIGINT",
+    "task": "VARCHAR",
     "done": "BOOLEAN",
     "reason": "VARCHAR",
     "stage": "VARCHAR",

@@ -108,7 +108,7 @@ class Runner:
         self._compiled = compile_source(
             work.sources[0], allow_holes=work.allow_holes, open_file=sources.__getitem__, libraries=self._libraries
         )
-        self._worlds: dict[str, World] = {}
+        self._latest: World | None = None
 
     def row(self, task: Task) -> Row:
         """Run an episode; what it raises is told in its row."""
@@ -123,9 +123,10 @@ class Runner:
         return known | row_of(run)
 
     def _world(self, variant: Variant) -> World:
-        if variant.text not in self._worlds:
-            self._worlds[variant.text] = World(loads(variant.text, variant.file), variant.text)
-        return self._worlds[variant.text]
+        """The scenario of a variant; the latest one is kept, since tasks come variant by variant."""
+        if self._latest is None or self._latest.text != variant.text:
+            self._latest = World(loads(variant.text, variant.file), variant.text)
+        return self._latest
 
 
 def head(variant: Variant, seed: int) -> Row:
