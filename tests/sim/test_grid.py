@@ -128,6 +128,16 @@ def test_a_wall_of_diagonal_cells_has_no_gap(tolerance: float) -> None:
     assert within((ring,), across).all()
 
 
+def test_where_pieces_would_come_too_near_the_corners_that_were_left_out_are_taken_back(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    grid = np.eye(8, dtype=bool)
+    exact = trace(grid, 1.0, HERE, tolerance=0.0)
+    assert len(trace(grid, 1.0, HERE)[0]) < len(exact[0]) / 2
+    monkeypatch.setattr("sim.scenarios.grid.APART", 3.0)
+    assert [set(ring) for ring in trace(grid, 1.0, HERE)] == [set(ring) for ring in exact]
+
+
 def test_a_diagonal_becomes_a_few_corners() -> None:
     rows, columns = np.mgrid[:100, :100]
     (ring,) = trace(columns < rows, 1.0, HERE)

@@ -206,7 +206,7 @@ def test_a_car_of_stage_steers(tmp_path: Path) -> None:
         ("model ( size [1 1", "bad.world:1: the file ends within '['"),
         ("model ( size [1 x 1] )", "bad.world:1: size: expected a number up to 100000, got 'x'"),
         ("model ( size [nan 1 1] )", "bad.world:1: size: expected a number up to 100000, got 'nan'"),
-        ("model ( size [0 1 1] )", "bad.world:1: size: expected lengths greater than 0, got 0 and 1"),
+        ("model ( size [0 1 1] )", "bad.world:1: size: expected lengths from 0.001 m on, got 0 and 1"),
         ('model ( bitmap "gone.png" )', "bad.world:1: bitmap: gone.png: there is no such file"),
         ("\nmodel ( block ( points 3 point[0] [0 0] ) )", "bad.world:2: it says that it has 3 points"),
         ("model ( block ( points 5e4 ) )", "bad.world:1: points: expected 3 to 1000, got 50000"),

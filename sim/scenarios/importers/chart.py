@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from behaviours.interface import Pose
 from sim.scenarios.grid import TOLERANCE, Bools, GridError, trace
-from sim.scenarios.importers.imported import Document, Options, WorldFileError, metres, place, radians, ring_text
+from sim.scenarios.importers.imported import Document, Options, WorldFileError, metres, place, radians, ring_texts
 
 WALL_HEIGHT = 2.0
 DEVIATION = 0.05  # [m] that a simplified wall may lie from the map
@@ -46,12 +46,12 @@ def charted(chart: Chart, options: Options) -> Document:
     except GridError as fault:
         raise WorldFileError(chart.file, 0, str(fault)) from fault
     start = options.start or _start(chart)
-    walls = {"kind": "outline", "id": "walls", "height": WALL_HEIGHT, "rings": [ring_text(ring) for ring in rings]}
+    walls = {"kind": "outline", "id": "walls", "height": WALL_HEIGHT, "rings": ring_texts(rings)}
     return {
         "name": chart.name,
         "bounds": _bounds(chart),
         "robot": {"model": options.model, "start": place(start), "heading": radians(start[2])},
-        "things": [walls] if rings else [],
+        "things": [walls] if walls["rings"] else [],
     }
 
 

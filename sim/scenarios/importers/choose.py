@@ -110,7 +110,7 @@ def read(path: Path, options: Options) -> Imported:
 
 def _signed(imported: Imported, path: Path, form: str) -> Document:
     """The document with its source, and what was left out."""
-    texts = [printable(text, 500) for text in imported.left_out]
+    texts = [printable(text, 500).strip() for text in imported.left_out]
     name = printable(str(imported.document["name"]), 100).strip()
     signed = imported.document | {"name": name or form, "source": printable(f"{path.name} ({form})")}
     return signed | ({"left_out": texts} if texts else {})

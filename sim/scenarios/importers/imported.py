@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 from behaviours.interface import Vec2, wrap
@@ -77,9 +78,20 @@ def ring_text(ring: Iterable[Vec2]) -> str:
     return ", ".join(corners)
 
 
+def ring_texts(rings: Iterable[Iterable[Vec2]]) -> list[str]:
+    """Rings as texts, without those that enclose less than a square millimetre once they are rounded."""
+    rounded = [[(metres(x), metres(y)) for x, y in ring] for ring in rings]
+    return [ring_text(ring) for ring in rounded if enclosed(ring) >= 1e-6]
+
+
+def enclosed(ring: Sequence[Vec2]) -> float:
+    """What a ring encloses [m^2], whichever way it runs."""
+    return abs(sum(a[0] * b[1] - b[0] * a[1] for a, b in pairwise((*ring, ring[0])))) / 2
+
+
 def printable(text: str, most: int = 200) -> str:
     """The text on one line, without signs that cannot be shown, and not longer than that."""
-    line = "".join(sign if sign.isprintable() else "?" for sign in " ".join(text.split()))
+    line = "".join(sign if sign.isprintable() else " " if sign.isspace() else "?" for sign in text)
     return line if len(line) <= most else line[: most - 1] + "…"
 
 

@@ -30,11 +30,12 @@ from sim.scenarios.importers.imported import (
     Options,
     WorldFileError,
     box_round,
+    enclosed,
     metres,
     place,
     printable,
     radians,
-    ring_text,
+    ring_texts,
     shown,
 )
 from sim.scenarios.importers.ros_map import dark
@@ -44,6 +45,7 @@ STANDARD_SIZE = (0.1, 0.1, 0.1)
 BOUNDARY = 0.01  # [m] thickness of the walls that `boundary` puts up
 UNKNOWN_RADIUS = 0.18  # [m] of robots whose type is nowhere defined
 MOST_MODELS = 5000
+LEAST_SIZE = 0.001  # [m] of a model and of a pixel
 SHAPES = {"model", "position"}
 SILENT = {"window", "speech", "power"}
 NO_MODEL = {"block", "sensor", "ranger", "laser"}
@@ -153,8 +155,8 @@ def _single(entity: Entity, key: str, default: float) -> float:
 
 def _size(entity: Entity) -> tuple[float, float, float]:
     length, width, height = _numbers(entity, "size", STANDARD_SIZE)
-    if length <= 0 or width <= 0:
-        raise entity.fault(f"size: expected lengths greater than 0, got {length:g} and {width:g}")
+    if min(length, width) < LEAST_SIZE:
+        raise entity.fault(f"size: expected lengths from {LEAST_SIZE:g} m on, got {length:g} and {width:g}")
     return length, width, height if height > 0 else STANDARD_SIZE[2]
 
 
@@ -180,9 +182,9 @@ def _things(model: _Model, world: stage_text.World) -> Iterator[Document]:
     rings = _bitmap_rings(entity, world) if "bitmap" in entity.properties else _block_rings(entity)
     if not rings and "bitmap" not in entity.properties:
         yield _box(model, height)
-    elif rings:
-        yield _outline(model, rings, height)
-    if _single(entity, "boundary", 0.0):
+    elif rings and (outline := _outline(model, rings, height))["rings"]:
+        yield outline
+    if _single(entity, "boundary", 0.0) and min(_size(entity)[:2]) > 4 * BOUNDARY:
         yield _outline(model, _frame(entity), height)
 
 
@@ -194,7 +196,7 @@ def _is_solid(entity: Entity) -> bool:
 
 def _outline(model: _Model, rings: Sequence[Ring], height: float) -> Document:
     placed = [[_at(_on(model.pose, Pose(x, y)))[:2] for x, y in ring] for ring in rings]
-    return {"kind": "outline", "id": model.name, "height": height, "rings": list(map(ring_text, placed))}
+    return {"kind": "outline", "id": model.name, "height": height, "rings": ring_texts(placed)}
 
 
 def _box(model: _Model, height: float) -> Document:
@@ -239,8 +241,10 @@ def _bitmap_rings(entity: Entity, world: stage_text.World) -> list[Ring]:
     grid = _grid(entity, world)
     try:
         length, width, _ = _size(entity)
-        cell = max(length / grid.shape[1], width / grid.shape[0])
-        rings = trace(grid, 1.0, Pose(0.0, 0.0, 0.0), tolerated(cell))
+        cells = length / grid.shape[1], width / grid.shape[0]
+        if min(cells) < LEAST_SIZE:
+            raise entity.fault(f"bitmap: its pixels would be {min(cells):g} m wide; expected {LEAST_SIZE:g} m or more")
+        rings = trace(grid, 1.0, Pose(0.0, 0.0, 0.0), tolerated(max(cells)))
     except GridError as fault:
         raise entity.fault(f"bitmap: {fault}") from fault
     return _fitted(entity, rings, (0.0, 0.0), (float(grid.shape[1]), float(grid.shape[0])))
@@ -285,8 +289,7 @@ def _fitted(entity: Entity, rings: Sequence[Ring], low: Vec2, high: Vec2) -> lis
 def _frame(entity: Entity) -> list[Ring]:
     """Walls along the sides of its size: an outer ring and a hole."""
     length, width, _ = _size(entity)
-    thick = min(BOUNDARY, length / 4, width / 4)
-    x, y = length / 2, width / 2
+    x, y, thick = length / 2, width / 2, BOUNDARY
     outer = ((-x, -y), (x, -y), (x, y), (-x, y))
     inner = tuple((math.copysign(x - thick, px), math.copysign(y - thick, py)) for px, py in reversed(outer))
     return [tuple(_at(_on(_origin(entity), Pose(px, py)))[:2] for px, py in ring) for ring in (outer, inner)]
@@ -350,9 +353,10 @@ def _robot(entity: Entity) -> Document:
 def _hull(entity: Entity) -> Document:
     """The convex hull of its blocks, or the box of its size."""
     length, width, _ = _size(entity)
-    corners = {corner for ring in _block_rings(entity) for corner in ring}
-    if corners:
-        return {"polygon": [place(corner) for corner in _convex_hull(sorted(corners))]}
+    corners = {(metres(x), metres(y)) for ring in _block_rings(entity) for x, y in ring}
+    hull = _convex_hull(sorted(corners))
+    if len(hull) > 2 and enclosed(hull) > 1e-6:
+        return {"polygon": [place(corner) for corner in hull]}
     origin = _origin(entity)
     if (origin.x, origin.y, origin.theta) == (0, 0, 0):
         return {"box": [metres(length), metres(width)]}
