@@ -1,8 +1,8 @@
 """What casting costs. Run it by hand: `python tests/benchmarks/bench_rays.py`.
 
 Takes: nothing. Gives: a line for each world, with the cost of 24 and of 360 rays round the robot, 10 m far, while it
-drives at 1 m/s and senses every 0.1 s: what a sweep costs in the mean, new cells included. Worlds: discs and boxes at
-equal density, 10 to 10,000 of them, one in ten moving where told; a map of rings with about 10,000 edges.
+drives at 1 m/s and senses every 0.1 s: processor time of a sweep in the mean, new cells included. Worlds: discs and
+boxes at equal density, 10 to 10,000 of them; 50 discs of which ten move; a map of rings with about 10,000 edges.
 Leaves alone: stepping the world (`bench_world.py`).
 """
 
@@ -72,10 +72,10 @@ def microseconds(work: Callable[[int], object]) -> float:
     """Median of the batches, per call."""
     batches = []
     for batch in range(BATCHES):
-        start = time.perf_counter()
+        start = time.process_time()
         for number in range(BATCH):
             work(batch * BATCH + number)
-        batches.append((time.perf_counter() - start) / BATCH * 1e6)
+        batches.append((time.process_time() - start) / BATCH * 1e6)
     return statistics.median(batches)
 
 

@@ -51,6 +51,16 @@ def test_loops_and_arrays_agree_on_middles_rims_sides_and_corners(at):
             assert [a.tobytes() for a in swept[0]] == [a.tobytes() for a in swept[1]]
 
 
+def test_where_there_is_a_compiler_the_source_compiles_without_a_warning(tmp_path):
+    compiler = next((found for name in raycast_c.COMPILERS if (found := shutil.which(name))), None)
+    if compiler is not None:
+        strict = ("-Wall", "-Wextra", "-Werror", "-pedantic", "-o", str(tmp_path / "rays.so"))
+        command = [compiler, *raycast_c.FLAGS, *strict, str(raycast_c.SOURCE), "-lm"]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert (done.returncode, done.stderr) == (0, "")
+        assert raycast_c.loops() is not None
+
+
 def test_without_a_compiler_there_are_no_loops(monkeypatch, tmp_path):
     monkeypatch.setattr(shutil, "which", lambda name: None)
     assert raycast_c.compiled(tmp_path) is None
@@ -74,7 +84,6 @@ def test_a_folder_that_cannot_be_made_leaves_no_loops(tmp_path):
 
 
 def test_a_library_that_is_there_is_not_compiled_again(monkeypatch, tmp_path):
-    if raycast_c.compiled(tmp_path) is None:
-        return
+    compiles = raycast_c.compiled(tmp_path) is not None
     monkeypatch.setattr(shutil, "which", lambda name: None)
-    assert raycast_c.compiled(tmp_path) is not None
+    assert (raycast_c.compiled(tmp_path) is not None) == compiles
