@@ -69,8 +69,7 @@ def _movers(world: World) -> Json:
     movers: Json = {}
     for thing in world.things:
         if thing.present and (thing.placed.moves or thing is world.donor):
-            x, y = thing.body.position  # always finite
-            movers[thing.placed.id] = [round(x, 3), round(y, 3), round(wrap(thing.body.angle), 4)]
+            movers[thing.placed.id] = [round(thing.x, 3), round(thing.y, 3), round(wrap(thing.theta), 4)]
     return movers
 
 

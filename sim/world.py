@@ -151,7 +151,7 @@ class World:
     def _surroundings(self) -> Surroundings:
         pose, radius = self.robot.pose, self.robot.build.radius
         way = math.hypot(pose.x - self.start.x, pose.y - self.start.y)
-        return Surroundings(self.time, self.period, Disc(-1, pose.x, pose.y, radius), way, self._things.discs())
+        return Surroundings(self.time, self.period, Disc(-1, pose.x, pose.y, radius), way, self._things.discs)
 
     # --- motion -----------------------------------------------------------------------------------
 
@@ -168,6 +168,7 @@ class World:
     def _distance_around(self) -> float:
         """Distance [m] from the circle round the hull to the nearest thing, at most `FAR`."""
         robot = self.robot
+        self._things.tell()
         found = self._space.point_query_nearest((robot.pose.x, robot.pose.y), FAR, robot.shapes[0].filter)
         return FAR - robot.build.radius if found is None else found.distance - robot.build.radius
 
@@ -175,12 +176,14 @@ class World:
         dt = self.period / self._substeps
         for _ in range(self._substeps):
             self.robot.glide(dt)
-        self._space.reindex_shapes_for_body(self.robot.body)
         self._things.glide(self.period)
 
     def _step_space(self) -> None:
+        self.robot.tell()
+        self._things.tell()
         for _ in range(self._substeps):
             self._space.step(self.period / self._substeps)
+        self._things.ask()
         self._room = 0.0
 
     def _settle(self) -> None:
@@ -237,7 +240,7 @@ class World:
         truth.beacon = self._beacon()
 
     def _beacon(self) -> Vec2 | None:
-        return None if self.donor is None else (self.donor.body.position.x, self.donor.body.position.y)
+        return None if self.donor is None else (self.donor.x, self.donor.y)
 
     def scene(self) -> Scene:
         """The outlines of all things where they are now."""
@@ -264,8 +267,8 @@ class World:
         """Distance [m] between the hulls of robot and donor; endless without a donor."""
         if self.donor is None:
             return math.inf
-        x, y = self.donor.body.position
-        return math.hypot(x - self.robot.pose.x, y - self.robot.pose.y) - self.robot.build.radius - self.donor.reach
+        way = math.hypot(self.donor.x - self.robot.pose.x, self.donor.y - self.robot.pose.y)
+        return way - self.robot.build.radius - self.donor.reach
 
     @property
     def home_distance(self) -> float:
@@ -287,6 +290,7 @@ class World:
     def _clearance_of_points(self, hull: Sequence[Vec2]) -> float:
         robot = self.robot
         reach = self._room + 2 * robot.build.radius
+        robot.tell()
         places = [robot.body.local_to_world(point) for point in hull]
         found = [self._space.point_query_nearest(place, reach, robot.shapes[0].filter) for place in places]
         return min([FAR, *(near.distance for near in found if near is not None)])
@@ -360,35 +364,43 @@ class _Moving:
 
     def discs(self) -> tuple[Disc, ...]:
         """All that can move, as discs."""
-        return tuple(Disc(t.index, *t.body.position, t.reach) for t in self.mobile if t.present)
+        return tuple(Disc(t.index, t.x, t.y, t.reach) for t in self.mobile if t.present)
 
     def stir(self) -> bool:
         """Whether anything that can be pushed moves, or is about to."""
         return any(roller.rolling for roller in self._rollers) or any(
-            thing.body.velocity.length > AT_REST or abs(thing.body.angular_velocity) > AT_REST
-            for thing in self._pushable
+            thing.speed > AT_REST or abs(thing.turn) > AT_REST for thing in self._pushable
         )
 
     def fastest(self) -> float:
         """Speed [m/s] of the fastest driven thing."""
-        return max([thing.body.velocity.length for thing in self._driven], default=0.0)
+        return max([thing.speed for thing in self._driven], default=0.0)
 
     def near_pushable(self, period: float) -> bool:
         """Whether a driven thing may touch one that can be pushed within a tick."""
-        for thing in self._driven:
-            speed = thing.body.velocity.length
-            if speed > 0 and thing.present:
-                need = speed * period + MARGIN + thing.reach
-                for other in self._pushable:
-                    if (thing.body.position - other.body.position).length < need + other.reach:
-                        return True
-        return False
+        if not self._pushable:
+            return False
+        return any(self._nears(thing, period) for thing in self._driven if thing.present and thing.speed > 0)
+
+    def _nears(self, thing: Thing, period: float) -> bool:
+        need = thing.speed * period + MARGIN + thing.reach
+        return any(math.hypot(thing.x - other.x, thing.y - other.y) < need + other.reach for other in self._pushable)
 
     def glide(self, period: float) -> None:
         """Driven things move on."""
         for thing in self._driven:
-            if thing.body.velocity.length > 0 or thing.body.angular_velocity != 0:
+            if thing.vx or thing.vy or thing.turn:
                 thing.glide(period)
+
+    def tell(self) -> None:
+        """The bodies what is so."""
+        for thing in self.mobile:
+            thing.tell()
+
+    def ask(self) -> None:
+        """The bodies what is so."""
+        for thing in self.mobile:
+            thing.ask()
 
 
 def _time(tick: int, period: float) -> float:

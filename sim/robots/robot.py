@@ -49,7 +49,7 @@ class Robot:
         self._spin = 0.0 if self._round else build.radius
         self._feeler = self._shape()  # not in the space
         self._x = self._y = self._angle = self._vx = self._vy = self._turn = 0.0
-        self._mirrored = False
+        self._mirrored, self._told = False, True
         self.put(start)
 
     def _shape(self) -> pymunk.Shape:
@@ -100,17 +100,21 @@ class Robot:
         """One sub-step [s] in free space: what a step of the space would make of it with nothing near."""
         if not self._mirrored:
             self._mirror()
-        body, vx, vy, turn = self.body, self._vx, self._vy, self._turn
+        vx, vy, turn = self._vx, self._vy, self._turn
         self._x, self._y = self._x + vx * dt, self._y + vy * dt
-        body.position = self._x, self._y
         if turn:
             self._angle += turn * dt
-            body.angle = self._angle
         self._vx, self._vy, self._turn = self._next(self._angle, vx, vy, turn, dt)
-        if self._vx != vx or self._vy != vy:
-            body.velocity = self._vx, self._vy
-        if self._turn != turn:
-            body.angular_velocity = self._turn
+        self._told = False
+
+    def tell(self) -> None:
+        """The body what gliding has made; before the space is asked or stepped."""
+        if not self._told:
+            body = self.body
+            body.position, body.angle = (self._x, self._y), self._angle
+            body.velocity, body.angular_velocity = (self._vx, self._vy), self._turn
+            self._space.reindex_shapes_for_body(body)
+            self._told = True
 
     def _drive(self, body: pymunk.Body, _gravity: Vec2, _damping: float, dt: float) -> None:
         (vx, vy), turn = body.velocity, body.angular_velocity
@@ -209,6 +213,7 @@ class Robot:
         body = self.body
         (self._x, self._y), self._angle = body.position, body.angle
         (self._vx, self._vy), self._turn, self._mirrored = body.velocity, body.angular_velocity, True
+        self._told = True
 
 
 def _moment(build: Build) -> float:

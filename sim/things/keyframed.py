@@ -18,9 +18,9 @@ class Keyframed:
         thing.put(*keyframes.at(0.0), thing.placed.pose.theta)
 
     def prepare(self, around: Surroundings) -> None:
-        """Set the velocity of the body, so that it is in its place when the tick is over."""
-        body = self._thing.body
+        """So that it is in its place when the tick is over."""
+        thing = self._thing
         x, y = self._keyframes.at(around.time + around.dt)
         if self._keyframes.begins_anew(around.time, around.time + around.dt):
-            self._thing.put(x, y, body.angle)
-        body.velocity = (x - body.position.x) / around.dt, (y - body.position.y) / around.dt
+            thing.put(x, y, thing.theta)
+        thing.go((x - thing.x) / around.dt, (y - thing.y) / around.dt)

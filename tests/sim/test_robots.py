@@ -76,6 +76,7 @@ def gliding(robot: Robot, command: Command) -> None:
     for _ in range(SUBSTEPS):
         robot.glide(DT)
     robot.settle(TICK)
+    robot.tell()
 
 
 def let(robot: Robot, drive: Drive, seconds: float) -> Robot:
@@ -525,6 +526,7 @@ def test_a_hull_on_a_curb_stays_lifted_until_it_is_over():
             robot.command(DOWN)
             robot.glide(DT)
             robot.settle(DT, climbing)
+            robot.tell()
         assert robot.climbs() == height
 
 
