@@ -2,13 +2,15 @@
 
 Takes: how many episodes of find and fetch. Gives: the wall time with one worker and with two, their ratio, and whether
 the rows of both, and of a run in which a worker was killed on the way, are the same; exit code 1 if they are not.
-Leaves alone: whether the machine was idle, on which the ratio depends.
+Leaves alone: whether the machine was idle, on which the ratio depends; processor times tell it.
 """
 
 from __future__ import annotations
 
 import argparse
+import resource
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 
@@ -29,22 +31,40 @@ def work(until: float | None) -> Work:
     return Work(sources, (Variant(world.scenario.name, "parking_lot.yaml", world.text),), until=until)
 
 
-def drive(whole: Work, seeds: range, workers: int, kill_after: int | None = None) -> tuple[list[Row], float]:
-    """Rows in the order of their seeds without what is measured, and how long they took [s]."""
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """rows: in the order of their seeds, without what is measured. wall, processor [s]: of all workers together."""
+
+    rows: list[Row]
+    wall: float
+    processor: float
+
+    def __str__(self) -> str:
+        return f"{len(self.rows)} rows in {self.wall:.1f} s ({self.processor:.1f} s of processor)"
+
+
+def processor_time() -> float:
+    """What processes that have ended took [s]."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def drive(whole: Work, seeds: range, workers: int, kill_after: int | None = None) -> Drive:
+    """Run them, and kill a worker once so many rows are there."""
     started: list[Worker] = []
 
     def kept() -> Worker:
         started.append(start())
         return started[-1]
 
-    begin = perf_counter()
+    begin, before = perf_counter(), processor_time()
     rows: list[tuple[int, Row]] = []
     for task, row in run(whole, tasks(whole, seeds), workers, kept):
         rows.append((task.index, {name: value for name, value in row.items() if name not in MEASURED}))
         if len(rows) == kill_after:
             started[0].process.kill()
     wall = perf_counter() - begin
-    return [row for _, row in sorted(rows, key=lambda pair: pair[0])], wall
+    return Drive([row for _, row in sorted(rows, key=lambda pair: pair[0])], wall, processor_time() - before)
 
 
 def main() -> int:
@@ -54,16 +74,16 @@ def main() -> int:
     arguments.add_argument("--until", type=float, help="simulated seconds at most")
     given = arguments.parse_args()
     whole, seeds = work(given.until), range(given.seeds)
-    one, alone = drive(whole, seeds, 1)
-    print(f"1 worker:  {len(one)} rows in {alone:.1f} s", flush=True)
-    two, together = drive(whole, seeds, 2)
-    print(f"2 workers: {len(two)} rows in {together:.1f} s, {alone / together:.2f} x (goal: {GOAL} x)", flush=True)
-    killed, late = drive(whole, seeds, 2, max(1, given.seeds // 4))
-    print(f"2 workers, one killed on the way: {len(killed)} rows in {late:.1f} s", flush=True)
-    print(f"done: {sum(row['done'] is True for row in one)} of {len(one)}")
-    same = one == two == killed
+    one = drive(whole, seeds, 1)
+    print(f"1 worker:  {one}", flush=True)
+    two = drive(whole, seeds, 2)
+    print(f"2 workers: {two}, {one.wall / two.wall:.2f} x (goal: {GOAL} x)", flush=True)
+    killed = drive(whole, seeds, 2, max(1, given.seeds // 4))
+    print(f"2 workers, one killed on the way: {killed}")
+    print(f"done: {sum(row['done'] is True for row in one.rows)} of {len(one.rows)}")
+    same = one.rows == two.rows == killed.rows
     print("the rows of all three runs are the same" if same else "THE ROWS DIFFER")
-    return 0 if same and len(one) == given.seeds else 1
+    return 0 if same and len(one.rows) == given.seeds else 1
 
 
 if __name__ == "__main__":
