@@ -18,6 +18,7 @@ import pytest
 import yaml
 from PIL import Image
 
+from behaviours.interface import Command, Drive
 from sim.raycast import Circle, Polygon, Rings
 from sim.robots.build import Ackermann, Differential
 from sim.scenarios.importers import Options, WorldFileError, format_of, load, read, split, text_of
@@ -25,6 +26,7 @@ from sim.scenarios.importers.carmen import entries
 from sim.scenarios.importers.imported import ring_text
 from sim.scenarios.scenario import Scenario, ThingSpec
 from sim.sensors.build import LidarBuild
+from sim.world import World
 
 SAMPLES = Path(__file__).parents[1] / "data" / "imports"
 ROOT = Path(__file__).parents[2]
@@ -78,6 +80,23 @@ def test_the_text_of_an_import_is_its_document_and_a_sound_scenario(name: str) -
     assert load(SAMPLES / name, Options())[1] == text
     assert text.startswith(f"# Imported from {name} (")
     assert imported.document["source"].startswith(name)
+
+
+@pytest.mark.parametrize("name", WORLDS)
+def test_the_robot_of_an_import_has_room_and_drives(name: str) -> None:
+    world = World(scenario(name, model="micromouse"), 0)
+    before = world.sense()
+    world.step(Command(drive=Drive(0.05, 0.0)))
+    assert world.sense().odometry.pose != before.odometry.pose
+    assert world.touches == ()
+
+
+def test_what_the_lidar_of_an_imported_world_sees_is_the_wall_of_the_bitmap() -> None:
+    world = World(scenario("yard.world", start=(-2.0, 0.0, math.pi / 2)), 0)
+    lidar = world.sense().lidar
+    assert lidar is not None
+    assert lidar.ranges[len(lidar.ranges) // 2] == pytest.approx(4.5)
+    assert lidar.ranges[90 + 360] == pytest.approx(2.9 - 2.0, abs=0.01)
 
 
 @pytest.mark.parametrize("name", WORLDS)
