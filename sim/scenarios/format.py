@@ -120,15 +120,20 @@ def loads(text: str, name: str = "scenario") -> Scenario:
 
 # --- numbers and places -----------------------------------------------------------------------------
 
-coordinate = quantity("length")
-positive = quantity("length", above=0)
-length = quantity("length", least=0)
-moment = quantity("time", least=0)
-duration = quantity("time", above=0)
-angle = quantity("angle")
+FARTHEST = 1e5  # [m]; also the longest
+SHORTEST = 1e-3  # [m] of what has a size
+LATEST = 1e7  # [s]
+
+coordinate = quantity("length", least=-FARTHEST, most=FARTHEST)
+positive = quantity("length", least=SHORTEST, most=FARTHEST)
+length = quantity("length", least=0, most=FARTHEST)
+moment = quantity("time", least=0, most=LATEST)
+duration = quantity("time", least=1e-3, most=LATEST)
+angle = quantity("angle", least=-100, most=100)
 share = quantity("number", least=0, most=1)
-spread = quantity("number", least=0)
-positive_number = quantity("number", above=0)
+spread = quantity("number", least=0, most=1e6)
+positive_number = quantity("number", above=0, most=1e3)
+mass = quantity("number", least=1e-3, most=1e6)
 speed = quantity("speed", above=0, most=10)
 
 
@@ -341,7 +346,7 @@ def _outline(rings: tuple[Ring, ...], height: float, id: str) -> ThingSpec:
 place_of_thing = {
     "at": Key(point, None),
     "height": Key(positive, 1.0),
-    "mass": Key(quantity("number", least=0), 0.0, doc="kg; 0: it cannot be pushed"),
+    "mass": Key(quantity("number", least=0, most=1e6), 0.0, doc="kg; 0: it cannot be pushed"),
     "keyframes": Key(keyframes, None),
     "present": Key(share, 1.0),
     "id": identity,
@@ -381,7 +386,7 @@ THINGS: dict[str, Spec[ThingSpec]] = {
         heading=heading,
         size=Key(size, (0.9, 0.5)),
         height=Key(positive, 1.0),
-        mass=Key(positive_number, 20.0),
+        mass=Key(mass, 20.0),
         roll=Key(roll, None),
         id=identity,
     ),
@@ -581,7 +586,7 @@ robot = record(
     model=Key(choice(*MODELS), None),
     shape=Key(shape, None),
     radius=Key(positive, None),
-    mass=Key(positive_number, None),
+    mass=Key(mass, None),
     height=Key(positive, None),
     drive=Key(by_kind(DRIVES), None),
     sensors=Key(Spec(_sensors, sensor_list.schema), None),
@@ -662,7 +667,7 @@ fault = record(
     kind=Key(choice(*FAULTS)),
     at=Key(moment, 0.0),
     until=Key(duration, math.inf),
-    amount=Key(quantity("number"), 1.0),
+    amount=Key(quantity("number", least=-1e6, most=1e6), 1.0),
 )
 
 

@@ -36,6 +36,7 @@ from sim.things.thing import Placed, Travel
 
 DONOR = "donor"
 ATTEMPTS, DRAWS = 100, 200
+MOST_WORK = 300_000  # corners that are looked at for one group of scattered things
 Strip = tuple[Vec2, Vec2, float]
 
 
@@ -116,9 +117,10 @@ def _scattered(scatter: Scatter, scenario: Scenario, before: list[Placed], chanc
     strips = [*_strips(scatter.keep_clear, scenario), *_lanes(before)]
     robot = Placed("robot", "robot", Circle(scenario.robot.build.radius), Pose(*scenario.robot.start), 1.0)
     wanted = int(chance.integers(scatter.count[0], scatter.count[1] + 1))
+    work = _Work(MOST_WORK)
     for _ in range(ATTEMPTS):
         new: list[Placed] = []
-        while len(new) < wanted and (one := _one(scatter, strips, [robot, *before, *new], chance)):
+        while len(new) < wanted and (one := _one(scatter, strips, [robot, *before, *new], chance, work)):
             new.append(one)
         if len(new) == wanted:
             return new
@@ -128,14 +130,35 @@ def _scattered(scatter: Scatter, scenario: Scenario, before: list[Placed], chanc
     raise ScenarioError([Problem(scenario.name, 1, 1, "scatter", message)])
 
 
-def _one(scatter: Scatter, strips: list[Strip], others: list[Placed], chance: Generator) -> Placed | None:
+@dataclass(slots=True)
+class _Work:
+    """How many corners may still be looked at."""
+
+    left: int
+
+    def do(self, outline: Outline) -> bool:
+        """Look at an outline; whether there was any left for it."""
+        match outline:
+            case Circle():
+                self.left -= 1
+            case Polygon(vertices):
+                self.left -= len(vertices)
+            case Rings(rings):
+                self.left -= sum(map(len, rings))
+        return self.left >= 0
+
+
+def _one(
+    scatter: Scatter, strips: list[Strip], others: list[Placed], chance: Generator, work: _Work
+) -> Placed | None:
     spec = SCATTERED[scatter.kinds[int(chance.integers(len(scatter.kinds)))]]
     xmin, ymin, xmax, ymax = scatter.region
     for _ in range(DRAWS):
         at = float(chance.uniform(xmin, xmax)), float(chance.uniform(ymin, ymax))
         radius = reach(spec.outline)
         if all(distance_to_segment(at, a, b) >= by + radius for a, b, by in strips) and all(
-            distance(at, other.outline, other.pose) - radius >= scatter.min_gap for other in others
+            work.do(other.outline) and distance(at, other.outline, other.pose) - radius >= scatter.min_gap
+            for other in others
         ):
             return _placed(spec, at, 0.0)
     return None
