@@ -132,7 +132,12 @@ class Recorder:
     def __init__(self, path: Path | str, header: Json, *, view: bool = True) -> None:
         self._file = FileIO(path, "wb")
         self._context = context = Context()  # the channels die with it
-        options = MCAPWriteOptions(compression=MCAPCompression.Zstd, chunk_size=CHUNK, compression_threads=0)
+        options = MCAPWriteOptions(
+            compression=MCAPCompression.Zstd,
+            chunk_size=CHUNK,
+            compression_threads=0,
+            disable_seeking=True,  # a chunk is put together in memory and written whole
+        )
         self._writer = open_mcap(self._file, context=context, writer_options=options)
         header_channel = Channel("/header", schema=HEADER_SCHEMA, context=context)
         self._tick = Channel("/tick", schema=TICK_SCHEMA, context=context)
