@@ -134,6 +134,7 @@ class Recorder:
         self._context = context = Context()  # the channels die with it
         options = MCAPWriteOptions(
             compression=MCAPCompression.Zstd,
+            compression_level=1,  # chunks are small: higher levels cost much and save little
             chunk_size=CHUNK,
             compression_threads=0,
             disable_seeking=True,  # a chunk is put together in memory and written whole
