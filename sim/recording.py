@@ -44,7 +44,7 @@ KEEP_S = 0.2
 """After so much simulated time [s] a chunk is closed and written: what a run that is killed may lose."""
 
 MAGIC = b"\x89MCAP0\r\n"
-BROKEN = (McapError, CRCValidationError, struct.error, ZstdError, EOFError, ValueError)
+BROKEN = (McapError, CRCValidationError, struct.error, ZstdError, EOFError, ValueError, MemoryError, OverflowError)
 
 Json = Mapping[str, object]
 

@@ -128,23 +128,28 @@ NAMES = {
     "speed": "a speed in metres per second",
     "number": "a number",
 }
+FAR_BOUND = 1e4  # bounds beyond are told only to those who pass them
 QUANTITY = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(?:\s*([a-z/]+))?")
 
 
 def quantity(kind: str, above: float = -math.inf, least: float = -math.inf, most: float = math.inf) -> Spec[float]:
     """A finite number of this kind (a key of `UNITS`) within the bounds."""
-    bounds = [
-        f"{sign} {bound:g}" for sign, bound in ((">", above), (">=", least), ("<=", most)) if math.isfinite(bound)
-    ]
-    expected = " ".join([NAMES[kind].rstrip(","), " and ".join(bounds)]).strip()
+    limits = [(sign, bound) for sign, bound in ((">", above), (">=", least), ("<=", most)) if math.isfinite(bound)]
+    told = _expected(kind, [(sign, bound) for sign, bound in limits if abs(bound) < FAR_BOUND])
 
     def check(report: Report, node: yaml.Node, path: str) -> float | Wrong:
         value = _in_si(node, UNITS[kind])
         if value is None or not (above < value < math.inf and least <= value <= most):
-            return report.unexpected(node, path, expected)
+            finite = value is not None and math.isfinite(value)
+            return report.unexpected(node, path, _expected(kind, limits) if finite else told)
         return value
 
-    return Spec(check, _number_schema(UNITS[kind], expected, above, least, most))
+    return Spec(check, _number_schema(UNITS[kind], told, above, least, most))
+
+
+def _expected(kind: str, limits: list[tuple[str, float]]) -> str:
+    bounds = [f"{sign} {bound:g}" for sign, bound in limits]
+    return " ".join([NAMES[kind].rstrip(","), " and ".join(bounds)]).strip()
 
 
 def _number_schema(units: Mapping[str, float], expected: str, above: float, least: float, most: float) -> Json:

@@ -198,7 +198,8 @@ class Thing:
 
     def _set(self, x: float, y: float, theta: float, present: bool) -> None:
         self.x, self.y, self.theta, self.present = x, y, theta, present
-        self.go(0.0, 0.0)
+        self.vx = self.vy = self.turn = 0.0
+        self._told = False
         self.tell()
 
     def go(self, vx: float, vy: float, turn: float = 0.0) -> None:

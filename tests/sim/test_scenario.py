@@ -97,7 +97,7 @@ things:
         "lot.yaml:2:9: bounds: expected a region [xmin, ymin, xmax, ymax], got a list of 3",
         "lot.yaml:3:1: robt: unknown key; did you mean 'robot'?",
         "lot.yaml:5:14: robot.start[1]: expected a length in metres, got 'zero'",
-        "lot.yaml:6:11: robot.radius: expected a length in metres >= 0.001 and <= 100000, got 'big'",
+        "lot.yaml:6:11: robot.radius: expected a length in metres >= 0.001, got 'big'",
         "lot.yaml:7:25: donor.at: this key is here a second time",
         "lot.yaml:9:12: things[0].kind: no such kind as 'wal'; did you mean 'wall'?",
         "lot.yaml:10:5: things[1]: expected a mapping with a key 'kind', one of "
