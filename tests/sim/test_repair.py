@@ -80,7 +80,7 @@ def test_a_whole_file_is_left_as_it_is(tmp_path: Path) -> None:
 def test_of_a_damaged_file_the_part_before_the_damage_is_saved(tmp_path: Path) -> None:
     path = record(tmp_path / "run.mcap")
     data = bytearray(path.read_bytes())
-    data[len(data) // 2] ^= 0xFF
+    data[len(data) // 3] ^= 0xFF
     path.write_bytes(data)
     saved = repair(path)
     assert not saved.whole
