@@ -37,9 +37,7 @@ class Percepts:
     def begin(self) -> None:
         """Forget what was before."""
         workshop = Workshop()
-        offers = [
-            self._offered[name].build(self._settings.get(name, NOTHING), workshop) for name in self._libraries
-        ]
+        offers = [self._offered[name].build(self._settings.get(name, NOTHING), workshop) for name in self._libraries]
         self._estimators = workshop.estimators
         self._percepts = {name: percept for offer in offers for name, percept in offer.percepts.items()}
 

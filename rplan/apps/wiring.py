@@ -171,7 +171,9 @@ def _check_tick(compiled: Compiled) -> None:
     period = compiled.goals.period
     if not SHORTEST <= period <= LONGEST:
         message = f"a tick of the plan takes {period:g} s; the simulated world can have {SHORTEST:g} s to {LONGEST:g} s"
-        raise PlanError([Diagnostic("other-tick", "error", message, compiled.plan.header.span, hint="write `:period 0.1s`")])
+        raise PlanError(
+            [Diagnostic("other-tick", "error", message, compiled.plan.header.span, hint="write `:period 0.1s`")]
+        )
 
 
 def plan_header(compiled: Compiled) -> Mapping[str, object]:

@@ -148,9 +148,7 @@ class _Work:
         return self.left >= 0
 
 
-def _one(
-    scatter: Scatter, strips: list[Strip], others: list[Placed], chance: Generator, work: _Work
-) -> Placed | None:
+def _one(scatter: Scatter, strips: list[Strip], others: list[Placed], chance: Generator, work: _Work) -> Placed | None:
     spec = SCATTERED[scatter.kinds[int(chance.integers(len(scatter.kinds)))]]
     xmin, ymin, xmax, ymax = scatter.region
     for _ in range(DRAWS):

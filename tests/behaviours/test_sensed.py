@@ -27,7 +27,10 @@ def reading(stamp: float = 0.0, **sensed) -> Reading:
     return Reading(stamp, 0, Odometry(Pose(0, 0), 0.0, 0.3), **sensed)
 
 
-def scan(ranges: list[float], mount: Pose = Pose(0.0, 0.0), stamp: float = 0.0) -> Scan:
+FRONT = Pose(0.0, 0.0)
+
+
+def scan(ranges: list[float], mount: Pose = FRONT, stamp: float = 0.0) -> Scan:
     bearings = np.radians([-90.0, 0.0, 90.0, 180.0])
     return Scan(stamp, True, mount, bearings, np.array(ranges), 0.1, 10.0)
 

@@ -1,9 +1,9 @@
-"""How many times faster than real time the world runs, without a brain. By hand: `python tests/benchmarks/bench_simulator.py`.
+"""How many times faster than real time the world runs, without a brain.
 
-The scene that simulators are compared in: a room of 20 x 20 m, 50 discs, a round robot of 0.2 m on a circle of 2 m at
-0.5 m/s, one lidar of 10 m over 360 degrees each step of 0.1 s, no noise. Then the same at equal density with 10 to
-10,000 discs, pushing, moving discs, and a grid map of 2,000 x 2,000 cells. Medians of five batches; with `--numpy` without
-the compiled caster.
+Run by hand: `python tests/benchmarks/bench_simulator.py`. The scene that simulators are compared in: a room of 20 x 20 m,
+50 discs, a round robot of 0.2 m on a circle of 2 m at 0.5 m/s, one lidar of 10 m over 360 degrees each step of 0.1 s, no
+noise. Then the same with the discs moving, at equal density with 10 to 10,000 discs, and a grid map of 2,000 x 2,000
+cells. Medians of five batches; with `--numpy` without the compiled caster.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Mutated scenarios: each is a world that runs or a `ScenarioError`, never another fault, never slow, never large.
 
-Run by hand: `python tests/experiments/fuzz_scenarios.py --texts 25000`. Texts are the scenarios that come with rplan and
-a yard with one of everything, with bytes, words, numbers and lines changed, dropped, doubled and exchanged. What is
-read is laid out and run for five ticks. Prints the counts, the slowest and the peak of memory; exit code 1 if one
+Run by hand: `python tests/experiments/fuzz_scenarios.py --texts 25000`. Texts are the scenarios that come with rplan
+and a yard with one of everything, with bytes, words, numbers and lines changed, dropped, doubled and exchanged. What
+is read is laid out and run for five ticks. Prints the counts, the slowest and the peak of memory; exit code 1 if one
 raised anything else or took longer than `--most` seconds.
 """
 
