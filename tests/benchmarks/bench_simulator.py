@@ -1,9 +1,9 @@
 """How many times faster than real time the world runs, without a brain.
 
-Run by hand: `python tests/benchmarks/bench_simulator.py`. The scene that simulators are compared in: a room of 20 x 20 m,
-50 discs, a round robot of 0.2 m on a circle of 2 m at 0.5 m/s, one lidar of 10 m over 360 degrees each step of 0.1 s, no
-noise. Then the same with the discs moving, at equal density with 10 to 10,000 discs, and a grid map of 2,000 x 2,000
-cells. Medians of five batches; with `--numpy` without the compiled caster.
+Run by hand: `python tests/benchmarks/bench_simulator.py`. The scene that simulators are compared in: a room of 20 x 20
+m, 50 discs, a round robot of 0.2 m on a circle of 2 m at 0.5 m/s, one lidar of 10 m over 360 degrees each step of
+0.1 s, no noise. Then the same with the discs moving, at equal density with 10 to 10,000 discs, and a grid map of
+2,000 x 2,000 cells. Medians of five batches; with `--numpy` without the compiled caster.
 """
 
 from __future__ import annotations
@@ -13,12 +13,13 @@ import math
 import statistics
 import time
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from behaviours.interface import Command, Drive, Pose
-from sim import raycast
-from sim.raycast import Rings
+from sim import world
+from sim.raycast import Rings, Scene
 from sim.scenarios.format import loads
 from sim.scenarios.grid import trace
 from sim.scenarios.scenario import Scenario, ThingSpec
@@ -61,13 +62,13 @@ def with_beams(scenario: Scenario, beams: int) -> Scenario:
 
 def factor(scenario: Scenario, command: Command = ROUND, steps: int = 400) -> float:
     """Simulated seconds a second: median of five batches."""
-    world, batches = World(scenario, 0), []
+    running, batches = World(scenario, 0), list[float]()
     for _ in range(5):
         begin = time.perf_counter()
         for _ in range(steps):
-            world.sense()
-            world.step(command)
-        batches.append(steps * world.period / (time.perf_counter() - begin))
+            running.sense()
+            running.step(command)
+        batches.append(steps * running.period / (time.perf_counter() - begin))
     return statistics.median(batches)
 
 
@@ -101,7 +102,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--numpy", action="store_true", help="without the compiled caster")
     if parser.parse_args().numpy:
-        raycast.loops = lambda: None
+        world.Scene = partial(Scene, loops=lambda: None)
     print("one robot among 50 discs, 0.1 s steps, without a brain: times real time")
     scene = room(50)
     for beams in (360, 24, 0):
