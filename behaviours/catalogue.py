@@ -9,6 +9,7 @@ them; the docs of the others say that they are chosen here.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
@@ -17,6 +18,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from behaviours.competences.fixate import Fixate
 from behaviours.competences.natigation import GazeSettings, Natigate
 from behaviours.competences.runaway import Runaway
+from behaviours.competences.steady import Steady
 from behaviours.competences.stop import Stop
 from behaviours.cores.circles import CircleSettings
 from behaviours.cores.crossing import CrossingSettings
@@ -31,6 +33,7 @@ from behaviours.estimators.ir_search import IrSearch, IrSettings
 from behaviours.estimators.latest import Latest
 from behaviours.estimators.navigation import ArrivalSettings, NavigationGoal
 from behaviours.estimators.obstacles import DeadlockSettings, Obstacles
+from behaviours.estimators.sensed import Sensed, SensedSettings
 from behaviours.estimators.stereo_search import StereoSearch, StereoSettings
 from behaviours.interface import Channels, Function, Library, Offer, Parameter, Values, Workshop
 
@@ -409,6 +412,99 @@ FIND_AND_FETCH = Library(
     _build_find_and_fetch,
 )
 
+# --- sensors ----------------------------------------------------------------------------------------
+
+_SENSED = _parameters(
+    SensedSettings(),
+    ("sector", "rad", "Half the angle of a direction of the lidar."),
+    ("far", "m", "The range where the lidar meets nothing, and before its first scan."),
+    ("patience", "s", "A sensor without a sound value for longer is lost."),
+)
+
+
+def _build_sensors(values: Values, workshop: Workshop) -> Offer:
+    settings = _settings(SensedSettings(), _SENSED, values)
+    sensed = workshop.share(Sensed, lambda: Sensed(settings))
+    return Offer(
+        percepts={
+            "lidar-range-ahead": lambda: sensed.range_towards(0.0),
+            "lidar-range-left": lambda: sensed.range_towards(math.pi / 2),
+            "lidar-range-right": lambda: sensed.range_towards(-math.pi / 2),
+            "lidar-range-behind": lambda: sensed.range_towards(math.pi),
+            "lidar-nearest-range": sensed.nearest_range,
+            "lidar-nearest-bearing": sensed.nearest_bearing,
+            "lidar-is-lost": sensed.lidar_is_lost,
+            "compass-heading": lambda: sensed.heading,
+            "compass-is-lost": sensed.compass_is_lost,
+            "turn-rate": lambda: sensed.turn_rate,
+            "pitch": lambda: sensed.pitch,
+            "roll": lambda: sensed.roll,
+            "motor-current": lambda: sensed.current,
+            "bumped": lambda: sensed.bumped,
+        }
+    )
+
+
+def _number(name: str, unit: str, doc: str) -> Function:
+    return Function(name, "number", doc, unit=unit)
+
+
+SENSORS = Library(
+    "sensors",
+    "What the sensors say, the last sound value of each: for any robot, and for recordings.",
+    (
+        _number("lidar-range-ahead", "m", "Least range ahead."),
+        _number("lidar-range-left", "m", "Least range to the left."),
+        _number("lidar-range-right", "m", "Least range to the right."),
+        _number("lidar-range-behind", "m", "Least range behind."),
+        _number("lidar-nearest-range", "m", "Least range of the whole scan."),
+        _number("lidar-nearest-bearing", "rad", "Where the least range was met, left positive."),
+        _bool("lidar-is-lost", "No sound scan has come for some time."),
+        _number("compass-heading", "rad", "Heading in the world."),
+        _bool("compass-is-lost", "No sound heading has come for some time."),
+        _number("turn-rate", "rad/s", "Of the IMU, or of odometry without one."),
+        _number("pitch", "rad", "Nose up positive."),
+        _number("roll", "rad", "Left side up positive."),
+        _number("motor-current", "A", "The greater of both motors."),
+        _bool("bumped", "A contact switch is pressed."),
+    ),
+    _SENSED,
+    _build_sensors,
+)
+
+# --- drive ------------------------------------------------------------------------------------------
+
+_STEADY = (
+    Parameter("speed", "number", "m/s", 0.2, "Ahead and back."),
+    Parameter("turn-rate", "number", "rad/s", 0.5, "On the spot."),
+)
+
+
+def _build_drive(values: Values, workshop: Workshop) -> Offer:
+    speed, turn_rate = (float(values.get(parameter.name, parameter.default)) for parameter in _STEADY)
+    return Offer(
+        competences={
+            "drive-ahead": Steady(speed, 0.0),
+            "back-up": Steady(-speed, 0.0),
+            "turn-left": Steady(0.0, turn_rate),
+            "turn-right": Steady(0.0, -turn_rate),
+        }
+    )
+
+
+DRIVE = Library(
+    "drive",
+    "Steady motion, whatever the sensors say.",
+    (
+        _command("drive-ahead", "Straight ahead.", "drive"),
+        _command("back-up", "Straight back.", "drive"),
+        _command("turn-left", "To the left on the spot.", "drive"),
+        _command("turn-right", "To the right on the spot.", "drive"),
+    ),
+    _STEADY,
+    _build_drive,
+)
+
 # --------------------------------------------------------------------------------------------------
 
 Shared = TypeVar("Shared", IrSearch, StereoSearch, NavigationGoal)
@@ -423,7 +519,7 @@ def _share(workshop: Workshop, kind: type[Shared], make: Callable[[], Shared], s
 
 
 LIBRARIES: Mapping[str, Library] = MappingProxyType(
-    {item.name: item for item in (ROBOT, RUNAWAY, NATIGATION, IR_SEARCH, STEREO_SEARCH, FIND_AND_FETCH)}
+    {item.name: item for item in (ROBOT, RUNAWAY, NATIGATION, IR_SEARCH, STEREO_SEARCH, FIND_AND_FETCH, SENSORS, DRIVE)}
 )
 """Every library, by name."""
 

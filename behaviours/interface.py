@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 from typing import Protocol, TypeVar
 
 import numpy as np
@@ -65,6 +66,8 @@ class Odometry:
     pose: Pose
     speed: float
     turn_rate: float
+    stamp: float = 0.0
+    fresh: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +77,8 @@ class HeadState:
     pan: float
     tilt: float
     settled: bool
+    stamp: float = 0.0
+    fresh: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,11 +110,118 @@ class StereoReading:
 
 
 @dataclass(frozen=True, slots=True)
+class Scan:
+    """One sweep of a lidar.
+
+    mount: pose of the sensor in the robot frame. bearings: (n,) [rad] in the frame of the sensor. ranges: (n,) [m]
+    from the sensor along the bearing; `max_range` where nothing was met, NaN where the beam failed.
+    """
+
+    stamp: float
+    fresh: bool
+    mount: Pose
+    bearings: Floats
+    ranges: Floats
+    min_range: float
+    max_range: float
+
+
+@dataclass(frozen=True, slots=True)
+class Compass:
+    """heading [rad] of the robot in the world, wrapped; NaN if the sensor failed."""
+
+    stamp: float
+    fresh: bool
+    heading: float
+
+
+@dataclass(frozen=True, slots=True)
+class Imu:
+    """turn_rate [rad/s]; acceleration [m/s^2] along x and y of the robot frame, gravity taken out."""
+
+    stamp: float
+    fresh: bool
+    turn_rate: float
+    acceleration: Vec2
+
+
+@dataclass(frozen=True, slots=True)
+class Inclination:
+    """How the ground tilts the robot: pitch [rad], nose up positive; roll [rad], left side up positive."""
+
+    stamp: float
+    fresh: bool
+    pitch: float
+    roll: float
+
+
+@dataclass(frozen=True, slots=True)
+class Fix:
+    """A fix of satellite navigation: x, y [m] in the world; NaN without reception."""
+
+    stamp: float
+    fresh: bool
+    x: float
+    y: float
+
+
+@dataclass(frozen=True, slots=True)
+class Currents:
+    """What the two drive motors draw [A]."""
+
+    stamp: float
+    fresh: bool
+    left: float
+    right: float
+
+
+@dataclass(frozen=True, slots=True)
+class Bumper:
+    """Contact switches round the hull: bearings (n,) [rad] of their middles, robot frame; pressed (n,) bool."""
+
+    stamp: float
+    fresh: bool
+    bearings: Floats
+    pressed: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class FlipperState:
+    """The flippers of a tracked robot: angle [rad], 0 at home, downward positive; deployed: they bear on the ground."""
+
+    angle: float
+    deployed: bool
+    stamp: float = 0.0
+    fresh: bool = True
+
+
+Sensed = (
+    Ranges
+    | Odometry
+    | HeadState
+    | IrReading
+    | StereoReading
+    | Scan
+    | Compass
+    | Imu
+    | Inclination
+    | Fix
+    | Currents
+    | Bumper
+    | FlipperState
+)
+"""What one sensor says; each carries `stamp` [s], when it was measured, and `fresh`: it arrived since the last tick."""
+
+NO_OTHERS: Mapping[str, Sensed] = MappingProxyType({})
+
+
+@dataclass(frozen=True, slots=True)
 class Reading:
     """All that the robot senses at one instant; a sensor that it does not carry is None.
 
     stamp [s] since the start; tick: how many readings came before. object_on_board: the signal of the donor
-    that the object lies on the platform.
+    that the object lies on the platform. others: by name, the sensors of a kind of which the robot carries several,
+    from the second on.
     """
 
     stamp: float
@@ -121,6 +233,15 @@ class Reading:
     ir: IrReading | None = None
     stereo: StereoReading | None = None
     object_on_board: bool = False
+    lidar: Scan | None = None
+    compass: Compass | None = None
+    imu: Imu | None = None
+    inclination: Inclination | None = None
+    gps: Fix | None = None
+    currents: Currents | None = None
+    bumper: Bumper | None = None
+    flippers: FlipperState | None = None
+    others: Mapping[str, Sensed] = field(default_factory=lambda: NO_OTHERS)
 
 
 # --- what is commanded ----------------------------------------------------------------------------
@@ -143,14 +264,22 @@ class Head:
 
 
 @dataclass(frozen=True, slots=True)
+class Flippers:
+    """deployed: down on the ground, or home."""
+
+    deployed: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Command:
     """What the actuators shall do until the next command.
 
-    None leaves an actuator to its safe state (drive: stop; head: stay).
+    None leaves an actuator to its safe state (drive: stop; head, flippers: stay).
     """
 
     drive: Drive | None = None
     head: Head | None = None
+    flippers: Flippers | None = None
 
     def is_finite(self) -> bool:
         """True when every number in it is finite."""
@@ -161,13 +290,14 @@ class Command:
     def merged(self, other: Command) -> Command:
         """Both together; where both drive one actuator, `other`'s word counts."""
         merged = self if other.drive is None else replace(self, drive=other.drive)
-        return merged if other.head is None else replace(merged, head=other.head)
+        merged = merged if other.head is None else replace(merged, head=other.head)
+        return merged if other.flippers is None else replace(merged, flippers=other.flippers)
 
 
 STOP = Command(drive=Drive(0.0, 0.0))
 """The safe command: stand still, leave the head where it is."""
 
-ACTUATORS = ("drive", "head")
+ACTUATORS = ("drive", "head", "flippers")
 
 
 # --- what a robot can do --------------------------------------------------------------------------

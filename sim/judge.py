@@ -1,7 +1,9 @@
-"""Whether the object was fetched, how long it took, and what was touched on the way.
+"""Whether the task was done, how long it took, and what was touched on the way.
 
 Takes: the world after each tick (the truth, not what the robot believes). Gives: the stage now, and a `Verdict`.
 Leaves alone: how the robot did it.
+
+Tasks: fetch the donor's object and bring it home; reach the goal; or none, then the run lasts until its time is over.
 """
 
 from __future__ import annotations
@@ -9,9 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from sim.world import TICK, Touch, World
+from sim.world import Touch, World
 
-Stage = Literal["to the donor", "hand-over", "return", "done"]
+Stage = Literal["to the donor", "hand-over", "return", "to the goal", "touched", "no task", "done"]
+Task = Literal["fetch", "reach", "none"]
 HOME, AT_START = 1.0, 0.3  # [m] from the start: what counts as back, and as not yet gone
 STILL = 1.0  # [s] to stand at home
 ONE_CONTACT = 1.0  # [s] within which touches of one thing are one contact
@@ -20,6 +23,9 @@ PHRASES: dict[Stage, str] = {
     "to the donor": "on the way to the donor",
     "hand-over": "during the hand-over",
     "return": "on the way back",
+    "to the goal": "on the way to the goal",
+    "touched": "on the way to the goal, which must be reached without a contact",
+    "no task": "without a task",
     "done": "when all was done",
 }
 
@@ -29,7 +35,7 @@ class Times:
     """Moments [s]; None for what has not happened.
 
     departure: the last one within 0.3 m of home before arrival; arrival: standing within the donor's reach for the
-    first time; loaded: the object is on board; home: standing at home with it for a second.
+    first time, or at the goal; loaded: the object is on board; home: standing at home with it for a second.
     """
 
     departure: float | None = None
@@ -42,9 +48,10 @@ class Times:
 class Verdict:
     """What is to be said of a run. duration [s]; distance [m] driven; smallest_clearance [m] from the hull, truly.
 
-    reason: in words, why it is not done; empty when it is.
+    reason: in words, why it is not done; empty when it is. A run without a task is done when its time is over.
     """
 
+    task: Task
     done: bool
     reason: str
     stage: Stage
@@ -90,17 +97,34 @@ class Judge:
         self._contacts: list[Touch] = []
         self._last_touch: dict[str, float] = {}
         self._in_reach = False
+        self._failed = False
 
     @property
     def done(self) -> bool:
-        """Whether the object has been fetched."""
-        return self._home is not None
+        """Whether the task is done."""
+        return (self._home if self._world.scenario.goal is None else self._arrival) is not None
+
+    @property
+    def over(self) -> bool:
+        """Whether nothing more can come of it."""
+        return self.done or self._failed
+
+    @property
+    def task(self) -> Task:
+        """What the scenario asks for."""
+        if self._world.scenario.goal is not None:
+            return "reach"
+        return "none" if self._world.donor is None else "fetch"
 
     @property
     def stage(self) -> Stage:
         """Where the task stands now."""
         if self.done:
             return "done"
+        if self._world.scenario.goal is not None:
+            return "touched" if self._failed else "to the goal"
+        if self._world.donor is None:
+            return "no task"
         if self._loaded is not None:
             return "return"
         return "hand-over" if self._in_reach else "to the donor"
@@ -111,22 +135,35 @@ class Judge:
         pose, self._time = world.robot.pose, world.time
         self._distance += ((pose.x - self._place.x) ** 2 + (pose.y - self._place.y) ** 2) ** 0.5
         self._place = pose
-        self._clearance = min(self._clearance, world.clearance())
-        self._watch_times(world)
+        self._clearance = min(self._clearance, world.clearance(below=self._clearance))
         self._watch_contacts(world)
+        if self._arrival is None and world.home_distance <= AT_START:
+            self._departure = world.time
+        self._watch_goal(world)
+        self._watch_errand(world)
 
-    def _watch_times(self, world: World) -> None:
+    def _watch_goal(self, world: World) -> None:
+        goal = world.scenario.goal
+        if goal is None:
+            return
+        pose = world.robot.pose
+        self._failed = self._failed or (goal.no_contact and bool(self._contacts))
+        near = (pose.x - goal.at[0]) ** 2 + (pose.y - goal.at[1]) ** 2 <= goal.within**2
+        if self._arrival is None and near and not self._failed:
+            self._arrival = world.time
+
+    def _watch_errand(self, world: World) -> None:
+        if world.hand_over is None:
+            return
         home, standing = world.home_distance, world.robot.standing
         self._in_reach = standing and world.donor_gap <= world.hand_over.reach
-        if self._arrival is None and home <= AT_START:
-            self._departure = world.time
         if self._arrival is None and self._in_reach:
             self._arrival = world.time
         if self._loaded is None and world.hand_over.on_board:
             self._loaded = world.time
         back = self._loaded is not None and standing and home <= HOME
-        self._home_for = self._home_for + TICK if back else 0.0
-        if self._home is None and self._home_for >= STILL - TICK / 2:
+        self._home_for = self._home_for + world.period if back else 0.0
+        if self._home is None and self._home_for >= STILL - world.period / 2:
             self._home = world.time
 
     def _watch_contacts(self, world: World) -> None:
@@ -139,10 +176,12 @@ class Judge:
     def verdict(self, stopped: str = "") -> Verdict:
         """What is to be said now. stopped: why the run ended, if not because it was done or out of time."""
         time = self._time
-        why = stopped or f"out of time at {time:.0f} s"
+        done = self.done or (self.stage == "no task" and not stopped)
+        why = stopped or (f"a contact at {time:.1f} s" if self._failed else f"out of time at {time:.0f} s")
         return Verdict(
-            done=self.done,
-            reason="" if self.done else f"{why} {PHRASES[self.stage]}",
+            task=self.task,
+            done=done,
+            reason="" if done else f"{why} {PHRASES[self.stage]}",
             stage=self.stage,
             times=Times(None if self._arrival is None else self._departure, self._arrival, self._loaded, self._home),
             duration=time,

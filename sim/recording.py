@@ -1,11 +1,11 @@
-"""A run on disk: one MCAP file with a header and one JSON object a tick.
+"""A run on disk: one MCAP file with a header, one JSON object a tick, what the robot sensed, and a view for viewers.
 
-Takes: a header, and tick by tick the state of the world and the brain's note (JSON text). Gives: a file that is the
-same to the byte for the same run, since every stamp in it is simulated; and the way back, `read`.
-Leaves alone: what world and brain put into their parts, the judgement of the run, and how it is shown.
+Takes: a header, and tick by tick the state of the world, the brain's note (JSON text) and the Reading. Gives: a file
+that is the same to the byte for the same run, since every stamp in it is simulated; and the ways back, `read` and
+`readings`. Leaves alone: what world and brain put into their parts, the judgement of the run, and how it is shown.
 
-Topics: `/header` once and `/tick` (JSON; tick n carries `tick`, `t` [s], `world`, `plan`), and `/pose`
-(foxglove.PoseInFrame, the true pose), so that any MCAP viewer can play the file as well.
+Topics: `/header` once and `/tick` (JSON; tick n carries `tick`, `t` [s], `world`, `plan`), `/reading` (JSON, all that
+was sensed to the last bit), and the typed channels of `viewing.py`, so that any MCAP viewer can play the file as well.
 """
 
 from __future__ import annotations
@@ -22,23 +22,29 @@ from types import TracebackType
 from typing import Self
 
 from foxglove import Channel, Context, open_mcap
-from foxglove.channels import PoseInFrameChannel
 from foxglove.mcap import MCAPCompression, MCAPWriteOptions
-from foxglove.messages import Pose, PoseInFrame, Quaternion, Timestamp, Vector3
 from mcap.exceptions import McapError
 from mcap.records import Channel as ChannelRecord
-from mcap.records import Message
+from mcap.records import McapRecord, Message
 from mcap.stream_reader import CRCValidationError, StreamReader
 from zstandard import ZstdError
 
-FORMAT = 1
-"""Number of the layout of header and ticks; a reader refuses a later one."""
+from behaviours.interface import Reading
+from sim import readings as texts
+from sim.readings import ReadingTexts
+from sim.viewing import View
+
+FORMAT = 2
+"""Number of the layout of header and ticks; a reader refuses a later one. 2: readings and views beside the ticks."""
 
 CHUNK = 16 * 1024
-"""Bytes [uncompressed] that are closed and written together: at most so much is lost in a crash."""
+"""Bytes [uncompressed] that are closed and written together at most."""
+
+KEEP_S = 0.2
+"""After so much simulated time [s] a chunk is closed and written: what a run that is killed may lose."""
 
 MAGIC = b"\x89MCAP0\r\n"
-BROKEN = (McapError, CRCValidationError, struct.error, ZstdError, EOFError, ValueError)
+BROKEN = (McapError, CRCValidationError, struct.error, ZstdError, EOFError, ValueError, MemoryError, OverflowError)
 
 Json = Mapping[str, object]
 
@@ -81,50 +87,92 @@ def _finite_text(note: str) -> str:
     return json_text(json.loads(note)) if "NaN" in note or "Infinity" in note else note
 
 
-def _pose(world: Json, nanoseconds: int) -> PoseInFrame | None:
-    match world.get("robot"):
-        case (float() | int() as x, float() | int() as y, float() | int() as theta):
-            sec, nsec = divmod(nanoseconds, 1_000_000_000)
-            turned = Quaternion(x=0.0, y=0.0, z=math.sin(theta / 2), w=math.cos(theta / 2))
-            pose = Pose(position=Vector3(x=x, y=y, z=0.0), orientation=turned)
-            return PoseInFrame(timestamp=Timestamp(sec=sec, nsec=nsec), frame_id="world", pose=pose)
-        case _:
-            return None
+HEADER_SCHEMA = {
+    "type": "object",
+    "title": "rplan.Header",
+    "properties": {"format": {"type": "integer"}, "seed": {"type": "integer"}, "period": {"type": "number"}},
+}
+NUMBERS = {"type": "array", "items": {"type": "number"}}
+TICK_SCHEMA = {
+    "type": "object",
+    "title": "rplan.Tick",
+    "properties": {
+        "tick": {"type": "integer"},
+        "t": {"type": "number"},
+        "world": {
+            "type": "object",
+            "properties": {
+                "stage": {"type": "string"},
+                "robot": NUMBERS,
+                "odometry": NUMBERS,
+                "head": NUMBERS,
+                "command": {"type": "object", "properties": {"drive": NUMBERS, "head": NUMBERS}},
+                "on_board": {"type": "boolean"},
+            },
+        },
+        "plan": {"type": "object"},
+    },
+}
+READING_SCHEMA = {
+    "type": "object",
+    "title": "rplan.Reading",
+    "properties": {"tick": {"type": "integer"}, "stamp": {"type": "number"}, "object_on_board": {"type": "boolean"}},
+}
+"""What viewers are told of the JSON; they find the rest themselves."""
 
 
 class Recorder:
     """Writes one recording; a context manager. An existing file is replaced.
 
-    The header stands on disk before the first tick, so that a run that dies leaves every closed chunk readable.
+    The header stands on disk before the first tick, and all ticks but those of the last `KEEP_S` do, so that little of
+    a run that dies is lost. view: whether the typed channels for viewers are written too.
     Raises OSError where the file cannot be written.
     """
 
-    def __init__(self, path: Path | str, header: Json) -> None:
+    def __init__(self, path: Path | str, header: Json, *, view: bool = True) -> None:
         self._file = FileIO(path, "wb")
         self._context = context = Context()  # the channels die with it
-        options = MCAPWriteOptions(compression=MCAPCompression.Zstd, chunk_size=CHUNK, compression_threads=0)
+        options = MCAPWriteOptions(
+            compression=MCAPCompression.Zstd,
+            compression_level=1,  # chunks are small: higher levels cost much and save little
+            chunk_size=CHUNK,
+            compression_threads=0,
+            disable_seeking=True,  # a chunk is put together in memory and written whole
+        )
         self._writer = open_mcap(self._file, context=context, writer_options=options)
-        header_channel = Channel("/header", message_encoding="json", context=context)
-        self._tick = Channel("/tick", message_encoding="json", context=context)
-        self._pose = PoseInFrameChannel("/pose", context=context)
-        self._count = 0
+        header_channel = Channel("/header", schema=HEADER_SCHEMA, context=context)
+        self._tick = Channel("/tick", schema=TICK_SCHEMA, context=context)
+        self._reading = Channel("/reading", schema=READING_SCHEMA, context=context)
+        self._readings = ReadingTexts()
+        self._view = View(context, header) if view else None
+        self._count, self._kept = 0, 0
         try:
             with _as_oserror():
                 header_channel.log(json_text({"format": FORMAT, **header}).encode(), log_time=0)
+                if self._view is not None:
+                    self._view.begin()
                 self._writer.flush()
         except OSError:
             self._file.close()
             raise
 
-    def tick(self, t: float, world: Json, note_json: str) -> None:
-        """Append one tick: simulated time [s], the world's snapshot, the brain's note as JSON text ("null": none)."""
+    def tick(self, t: float, world: Json, note_json: str, reading: Reading | None = None) -> None:
+        """Append one tick: simulated time [s], the world's snapshot, the brain's note as JSON text ("null": none).
+
+        reading: what the robot sensed in it; where it is given, `readings` gives it back.
+        """
         nanoseconds = round(t * 1e9)
         note = _finite_text(note_json)
         text = f'{{"tick":{self._count},"t":{json_text(t)},"world":{json_text(world)},"plan":{note}}}'
         with _as_oserror():
             self._tick.log(text.encode(), log_time=nanoseconds)
-            if pose := _pose(world, nanoseconds):
-                self._pose.log(pose, log_time=nanoseconds)
+            if reading is not None:
+                self._reading.log(self._readings.text(reading).encode(), log_time=nanoseconds)
+            if self._view is not None:
+                self._view.tick(nanoseconds, world, reading)
+            if nanoseconds - self._kept >= KEEP_S * 1e9 - 1:
+                self._writer.flush()
+                self._kept = nanoseconds
         self._count += 1
 
     def close(self) -> None:
@@ -157,14 +205,16 @@ def _as_oserror() -> Iterator[None]:
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """One run. ticks may be iterated again and again; those of a file are read anew each time, chunk by chunk.
+    """One run. ticks and readings may be iterated again and again; those of a file are read anew each time.
 
-    cut_short: the writer died before it closed the file; ticks has what it had written by then.
+    cut_short: the writer died before it closed the file; ticks has what it had written by then. readings: what the
+    robot sensed, at the same times as the ticks; none in a recording of the first format.
     """
 
     header: Json
     ticks: Iterable[Json]
     cut_short: bool = False
+    readings: Iterable[Reading] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,20 +226,38 @@ class _Ticks:
         return (json.loads(data) for data in _messages(self.path, "/tick", self.cut_short))
 
 
+@dataclass(frozen=True, slots=True)
+class _Readings:
+    path: Path
+    cut_short: bool
+
+    def __iter__(self) -> Iterator[Reading]:
+        try:
+            yield from texts.readings(_messages(self.path, "/reading", self.cut_short))
+        except ValueError as fault:
+            raise RecordingError(f"{self.path} is damaged ({fault}): record the run again") from fault
+
+
+def records(path: Path) -> Iterator[McapRecord]:
+    """Every record of an MCAP file, in order; raises one of `BROKEN` where the file cannot be read further."""
+    with path.open("rb") as stream:
+        yield from StreamReader(stream, validate_crcs=True, record_size_limit=path.stat().st_size).records
+
+
 def _messages(path: Path, topic: str, cut_short: bool) -> Iterator[bytes]:
     """The messages of a topic in file order; where the file was cut short it ends quietly."""
-    with path.open("rb") as stream:
-        channels: dict[int, str] = {}
-        try:
-            for record in StreamReader(stream, validate_crcs=True, record_size_limit=path.stat().st_size).records:
-                match record:
-                    case ChannelRecord():
-                        channels[record.id] = record.topic
-                    case Message() if channels.get(record.channel_id) == topic:
-                        yield record.data
-        except BROKEN as fault:
-            if not cut_short:
-                raise RecordingError(f"{path} is damaged ({fault}): record the run again") from fault
+    channels: dict[int, str] = {}
+    try:
+        for record in records(path):
+            match record:
+                case ChannelRecord():
+                    channels[record.id] = record.topic
+                case Message() if channels.get(record.channel_id) == topic:
+                    yield record.data
+    except BROKEN as fault:
+        if not cut_short:
+            advice = "record the run again, or save its beginning by `rplan repair`"
+            raise RecordingError(f"{path} is damaged ({fault}): {advice}") from fault
 
 
 def _is_cut_short(path: Path) -> bool:
@@ -227,4 +295,19 @@ def read(path: Path | str) -> Recording:
     """
     path = Path(path)
     cut_short = _is_cut_short(path)
-    return Recording(_header(path, cut_short), _Ticks(path, cut_short), cut_short)
+    header = _header(path, cut_short)
+    return Recording(header, _Ticks(path, cut_short), cut_short, _Readings(path, cut_short))
+
+
+def readings(path: Path | str) -> Iterator[Reading]:
+    """What the robot sensed, tick by tick, to the last bit.
+
+    Raises RecordingError where the file is no recording, holds no readings or is damaged further in; OSError where it
+    cannot be opened.
+    """
+    found = iter(read(path).readings)
+    first = next(found, None)
+    if first is None:
+        raise RecordingError(f"{path} holds no readings: record the run again with this rplan")
+    yield first
+    yield from found

@@ -13,17 +13,22 @@ from __future__ import annotations
 import base64
 import html
 import json
+import math
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
 from pathlib import Path
 
+from behaviours.interface import Ranges
 from sim.recording import Json, Recording, json_text
 
 MILLI, CENTI = 1000, 100
 DECIMALS = 2
 """Decimals that numbers in reports keep: centimetres and hundredths of a radian are finer than a screen."""
+
+SCAN_S, BEAMS = 0.2, 180
+"""Scans are shown at this distance in time [s] at least, and of each no more than so many beams."""
 
 WORLD_TRACKS = ("robot", "odometry", "head")
 WORLD_RUNS = ("contacts", "on_board", "stage")
@@ -141,8 +146,38 @@ class _Packing:
             self.runs.setdefault(name, Run()).add(tick, plan.get(name))
 
 
+def _sensed(packing: _Packing, recording: Recording, milliseconds: Sequence[int | None]) -> Json:
+    """Scans become a track; gives where the rays of lidar and sonars lie, as far as readings say it."""
+    index_at = {ms: index for index, ms in enumerate(milliseconds)}
+    lie: dict[str, object] = {}
+    due, every = -math.inf, 1
+    for reading in recording.readings:
+        scan, index = reading.lidar, index_at.get(round(reading.stamp * 1000))
+        if "sonar" not in lie and reading.sonar is not None:
+            lie["sonar"] = _ring(reading.sonar, reading.skirt)
+        if scan is None or index is None or not scan.fresh or reading.stamp < due or not scan.ranges.size:
+            continue
+        if "scan" not in lie:
+            every = -(-scan.ranges.size // BEAMS)
+            lie["scan"] = {
+                "mount": [scan.mount.x, scan.mount.y, scan.mount.theta],
+                "bearings": [round(bearing, 4) for bearing in scan.bearings[::every].tolist()],
+                "max_range": scan.max_range,
+            }
+        ranges = [value if math.isfinite(value) else None for value in scan.ranges[::every].tolist()]
+        packing.track(index, "scan", ranges, CENTI)
+        due = reading.stamp + SCAN_S - 1e-6
+    return lie
+
+
+def _ring(waist: Ranges, skirt: Ranges | None) -> Json:
+    """Bearings of the sonars in the order of the snapshot, and how many of them are of the waist."""
+    bearings = [*waist.bearings.tolist(), *([] if skirt is None else skirt.bearings.tolist())]
+    return {"bearings": [round(b, 4) for b in bearings], "waist": len(waist.bearings), "mount": waist.mount_radius}
+
+
 def pack(recording: Recording, verdict: str = "") -> Json:
-    """All that the page shows: {"header", "verdict", "cut_short", "ticks", "t" [ms], "tracks", "runs"}."""
+    """All that the page shows: {"header", "verdict", "cut_short", "ticks", "t" [ms], "rays", "tracks", "runs"}."""
     packing, milliseconds = _Packing(), list[int | None]()
     for index, tick in enumerate(recording.ticks):
         t = tick.get("t")
@@ -150,8 +185,10 @@ def pack(recording: Recording, verdict: str = "") -> Json:
         packing.world(index, _part(tick, "world"))
         if isinstance(tick.get("plan"), Mapping):
             packing.plan(index, _part(tick, "plan"))
+    rays = _sensed(packing, recording, milliseconds)
     return {
         "header": recording.header,
+        "rays": rays,
         "verdict": verdict,
         "cut_short": recording.cut_short,
         "ticks": len(milliseconds),

@@ -3,43 +3,52 @@
 Takes: a scenario, a seed and, tick by tick, a `Command`. Gives: a `Reading` of what the robot senses, and the truth for
 those who judge, record and draw. Leaves alone: who decides, and when a run is over.
 
-A tick is 0.1 s, five sub-steps of 0.02 s. There is no gravity: the plane is seen from above, and what is pushed is
-slowed down by the damping of the space. Everything happens in a fixed order and chance comes from the seed alone, so
-the same scenario and seed give the same run. A world is never saved in mid-run; it is made again.
+A tick is `period` long, in sub-steps of `SUBSTEP` at most. There is no gravity: the plane is seen from above, and what
+is pushed is slowed down by the damping of the space. Everything happens in a fixed order and chance comes from the seed
+alone, so the same scenario and seed give the same run. A world is never saved in mid-run; it is made again.
+
+Where nothing can touch anything within the tick, bodies glide: each moves as the sub-steps of the space would move it,
+but without the space. Whether that is so follows from the state alone: how far the robot is from everything
+(`_room`), what moves, and how fast.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import pymunk
 
-from behaviours.interface import Command, Drive, Reading
+from behaviours.interface import Command, Currents, Drive, FlipperState, Pose, Reading, Vec2, wrap
+from sim.frames import bearing
 from sim.noise import chance
-from sim.raycast import Scene
+from sim.raycast import Circle, Polygon, Scene
 from sim.robots.head import PanTilt
-from sim.robots.synchro import SynchroDrive
+from sim.robots.robot import Robot
 from sim.scenarios.layout import lay_out
-from sim.scenarios.scenario import Scenario
-from sim.sensors.infrared import InfraredReader
-from sim.sensors.odometry import DeadReckoning
-from sim.sensors.sonar import Sonar
-from sim.sensors.stereo import Stereo
+from sim.scenarios.scenario import Change, Event, Put, Scenario, Vanish
+from sim.sensors.suite import Suite
+from sim.sensors.truth import Truth
 from sim.things.donor import HandOver
+from sim.things.keyframed import Keyframed
 from sim.things.roller import Roller
 from sim.things.shifter import Shifter
 from sim.things.surroundings import Disc, Surroundings
-from sim.things.thing import OTHER, ROBOT, Roll, Shift, Thing, Travel
+from sim.things.thing import OTHER, ROBOT, Keyframes, Roll, Shift, Thing, Travel
 from sim.things.traveller import Traveller
 
-TICKS_PER_SECOND, SUBSTEPS = 10, 5
-TICK = 1 / TICKS_PER_SECOND  # [s]
+PERIOD = 0.1  # [s] of a tick, unless a plan asks for another
+SHORTEST, LONGEST = 0.001, 1.0  # [s] that a tick may take
+SUBSTEP = 0.02  # [s] at most
 DAMPING = 0.01  # share of its speed that a pushed thing has left after a second
 SLOP = 0.0005  # [m] that touching hulls may overlap
 ITERATIONS = 20
 FAR = 10.0  # [m] beyond which clearance is not looked for
 TOUCH_SPEED = 0.01  # [m/s]
+MARGIN = 0.02  # [m] that must be left for bodies to glide
+AT_REST = 1e-3  # [m/s, rad/s] below which a pushed thing lies still
+OUTLINE_STEP = 0.02  # [m] between the places of a hull that is not round from which clearance is measured
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,111 +64,188 @@ class Touch:
     driven_into: bool
 
 
-Mover = Traveller | Roller | Shifter
+Mover = Traveller | Roller | Shifter | Keyframed
 
 
 class World:
-    """One world in motion: `sense` once a tick (asked again it gives the same Reading), then `step`."""
+    """One world in motion: `sense` once a tick (asked again it gives the same Reading), then `step`.
 
-    def __init__(self, scenario: Scenario, seed: int) -> None:
-        self.scenario, self.seed, self.tick = scenario, seed, 0
-        sources = chance(seed)
-        layout = lay_out(scenario, sources.layout)
+    period [s]: the length of a tick.
+    """
+
+    def __init__(self, scenario: Scenario, seed: int, period: float = PERIOD) -> None:
+        self.scenario, self.seed, self.period, self.tick = scenario, seed, period, 0
+        layout = lay_out(scenario, chance(seed).layout)
         self.start = layout.start
+        self._substeps = max(1, math.ceil(period / SUBSTEP - 1e-9))
         self._space = _space()
         self.things = tuple(Thing(index, placed, self._space) for index, placed in enumerate(layout.things))
-        self.donor = self.things[0]
-        self.robot = SynchroDrive(self._space, layout.start, scenario.robot.build)
+        self.robot = Robot(self._space, layout.start, scenario.robot.build, scenario.ground)
         self.head = PanTilt()
-        self.hand_over = HandOver(scenario.donor.reach, scenario.donor.hand_over)
-        self._by_shape = {thing.shape: thing for thing in self.things}
-        self._moving = tuple(thing for thing in self.things if thing.placed.moves)
-        self._movers = tuple(mover for thing in self.things for mover in _movers(thing))
-        placed = [thing.placed for thing in self.things]
-        self._scene = Scene([p.outline for p in placed], [p.pose for p in placed], [p.height for p in placed])
-        self._scene_tick = -1
-        spec = scenario.robot
-        self._sonar = Sonar(spec.sonar, spec.build.radius, sources.sonar)
-        self._infrared = InfraredReader(spec.infrared, scenario.weather, sources.infrared)
-        self._stereo = Stereo(spec.stereo, sources.stereo)
-        self._odometry = DeadReckoning(spec.odometry, layout.start, sources.odometry)
-        self._base_still_for = 0.0
-        self._touching: dict[int, Touch] = {}
-        self._last_touch: dict[int, Touch] = {}
-        self.touches: tuple[Touch, ...] = ()
-        self.begun: tuple[Touch, ...] = ()
+        self.donor = self.things[0] if scenario.donor is not None else None
+        spec = scenario.donor
+        self.hand_over = HandOver(spec.reach, spec.hand_over) if spec is not None else None
+        self._things = _Moving(self.things)
+        self._events = sorted(scenario.events, key=lambda event: event.time)
+        self._scene = _scene(self.things)
+        self._scene_tick = 0
+        self._hull = _outline_points(self.robot)
+        self._room = 0.0  # [m] that the robot's hull is certainly away from everything
+        self._contacts = _Contacts(self)
+        self._truth = self._first_truth()
+        self._suite = Suite(scenario.robot.sensors, scenario.faults, scenario.robot.build, layout.start, seed)
         self._reading: Reading | None = None
-        self._space.on_collision(ROBOT, OTHER, begin=self._begin, pre_solve=self._touch)
 
     # --- the loop ---------------------------------------------------------------------------------
 
     @property
     def time(self) -> float:
         """Simulated time [s]."""
-        return self.tick / TICKS_PER_SECOND
+        return _time(self.tick, self.period)
 
     def sense(self) -> Reading:
         """What the robot senses now."""
         if self._reading is None:
-            self._reading = self._sensed()
+            on_board = self.hand_over is not None and self.hand_over.on_board
+            self._reading = self._suite.sense(self._truth, on_board)
         return self._reading
 
     def step(self, command: Command) -> None:
         """One tick with this command. Raises ValueError where a number in it is not finite."""
         if not command.is_finite():
             raise ValueError(f"a command must be finite, got {command}")
-        self._obey(command)
+        self.sense()  # whether or not anybody asked: sensors measure when they are due
+        self.robot.command(command)
+        if command.head is not None:
+            self.head.command(command.head)
         self._prepare()
-        self.begun, self._touching = (), {}
-        for _ in range(SUBSTEPS):
-            self._space.step(TICK / SUBSTEPS)
+        self._contacts.clear()
+        if self._is_free():
+            self._glide()
+        else:
+            self._step_space()
         self.tick += 1
         self._settle()
 
-    def _obey(self, command: Command) -> None:
-        self.robot.command(command.drive or Drive(0.0, 0.0))
-        if command.head is not None:
-            self.head.command(command.head)
-
     def _prepare(self) -> None:
-        if self._movers:
+        while self._events and self._events[0].time <= self.time + 1e-9:
+            self._happen(self._events.pop(0))
+        if self._things.movers:
             around = self._surroundings()
-            for mover in self._movers:
+            for mover in self._things.movers:
                 mover.prepare(around)
 
-    def _settle(self) -> None:
-        self.robot.read()
-        self.head.move(TICK)
-        self._odometry.update(self.robot.pose, TICK)
-        still = self.robot.standing and abs(self.robot.turn_rate) < 0.01
-        self._base_still_for = self._base_still_for + TICK if still else 0.0
-        self.hand_over.update(self.donor_gap, self.robot.standing, TICK)
-        self.touches = tuple(self._touching.values())
-        self._reading = None
+    def _happen(self, event: Event) -> None:
+        match event.what:
+            case Vanish(name):
+                self._named(name).remove()
+            case Put(name, pose):
+                self._named(name).put(pose.x, pose.y, pose.theta)
+            case Change(weather):
+                self._truth.weather = weather
+        self._room, self._scene_tick = 0.0, -1
+
+    def _named(self, name: str) -> Thing:
+        return next(thing for thing in self.things if thing.placed.id == name)
 
     def _surroundings(self) -> Surroundings:
         pose, radius = self.robot.pose, self.robot.build.radius
         way = math.hypot(pose.x - self.start.x, pose.y - self.start.y)
-        others = tuple(Disc(t.index, *t.body.position, t.reach) for t in self._moving if t.present)
-        return Surroundings(self.time, TICK, Disc(-1, pose.x, pose.y, radius), way, others)
+        return Surroundings(self.time, self.period, Disc(-1, pose.x, pose.y, radius), way, self._things.discs)
 
-    # --- sensing ----------------------------------------------------------------------------------
+    # --- motion -----------------------------------------------------------------------------------
 
-    def _sensed(self) -> Reading:
-        stamp, pose, scene, head = self.time, self.robot.pose, self.scene(), self.head.state
-        still_for = self.head.still_for
-        beacon = self.donor.body.position
-        waist, skirt = self._sonar.sense(self.tick, stamp, pose, scene)
-        heard = self._infrared.sense(stamp, head, still_for, pose, (beacon.x, beacon.y), self.donor.index, scene)
-        verged = self._stereo.sense(stamp, head, min(still_for, self._base_still_for), pose, scene)
-        return Reading(
-            stamp, self.tick, self._odometry.reading, waist, skirt, head, heard, verged, self.hand_over.on_board
+    def _is_free(self) -> bool:
+        """Whether nothing can touch anything within the tick."""
+        if self._things.stir():
+            return False
+        most = max(abs(self.robot.speed), self.robot.build.max_speed)
+        need = most * (self.period + self.period / self._substeps) + self._things.fastest() * self.period + MARGIN
+        if self._room < need:
+            self._room = self._distance_around()
+        return self._room >= need and not self._things.near_pushable(self.period)
+
+    def _distance_around(self) -> float:
+        """Distance [m] from the circle round the hull to the nearest thing, at most `FAR`."""
+        robot = self.robot
+        self._things.tell()
+        found = self._space.point_query_nearest((robot.pose.x, robot.pose.y), FAR, robot.shapes[0].filter)
+        return FAR - robot.build.radius if found is None else found.distance - robot.build.radius
+
+    def _glide(self) -> None:
+        dt = self.period / self._substeps
+        for _ in range(self._substeps):
+            self.robot.glide(dt)
+        self._things.glide(self.period)
+
+    def _step_space(self) -> None:
+        self.robot.tell()
+        self._things.tell()
+        for _ in range(self._substeps):
+            self._space.step(self.period / self._substeps)
+        self._things.ask()
+        self._room = 0.0
+
+    def _settle(self) -> None:
+        robot, before = self.robot, self.robot.pose
+        robot.settle(self.period, self._contacts.climbing)
+        self.head.move(self.period)
+        moved = math.hypot(robot.pose.x - before.x, robot.pose.y - before.y)
+        self._room -= moved + self._things.fastest() * self.period
+        self._update_truth()
+        if self.donor is not None and self.hand_over is not None:
+            self.hand_over.update(self.donor_gap, robot.standing, self.period)
+        self._suite.update(self._truth)
+        self._reading = None
+
+    # --- what is so -------------------------------------------------------------------------------
+
+    def _first_truth(self) -> Truth:
+        robot, weather, ground = self.robot, self.scenario.weather, self.scenario.ground
+        donor = -1 if self.donor is None else self.donor.index
+        still = Currents(0.0, True, 0.0, 0.0)
+        return Truth(
+            tick=0,
+            time=0.0,
+            dt=self.period,
+            pose=robot.pose,
+            speed=0.0,
+            turn_rate=0.0,
+            acceleration=(0.0, 0.0),
+            wheels=Drive(0.0, 0.0),
+            aside=0.0,
+            still_for=0.0,
+            head=self.head.state,
+            head_still_for=0.0,
+            load=still,
+            flippers=FlipperState(0.0, False),
+            touched=(),
+            beacon=self._beacon(),
+            donor=donor,
+            weather=weather,
+            ground=ground,
+            scene=self.scene,
         )
+
+    def _update_truth(self) -> None:
+        truth, robot = self._truth, self.robot
+        truth.tick, truth.time = self.tick, self.time
+        truth.pose, truth.speed, truth.turn_rate = robot.pose, robot.speed, robot.turn_rate
+        truth.acceleration, truth.wheels, truth.aside = robot.acceleration, robot.wheels, robot.aside
+        truth.load, truth.flippers = robot.load, robot.flippers
+        still = robot.standing and abs(robot.turn_rate) < 0.01
+        truth.still_for = truth.still_for + self.period if still else 0.0
+        truth.head, truth.head_still_for = self.head.state, self.head.still_for
+        truth.touched = self._contacts.bearings
+        truth.beacon = self._beacon()
+
+    def _beacon(self) -> Vec2 | None:
+        return None if self.donor is None else (self.donor.x, self.donor.y)
 
     def scene(self) -> Scene:
         """The outlines of all things where they are now."""
         if self._scene_tick != self.tick:
-            for thing in self._moving:
+            for thing in self._things.mobile:
                 self._scene.place(thing.index, thing.pose)
             self._scene_tick = self.tick
         return self._scene
@@ -167,42 +253,197 @@ class World:
     # --- the truth --------------------------------------------------------------------------------
 
     @property
+    def touches(self) -> tuple[Touch, ...]:
+        """What touches the robot at the end of the tick or did within it."""
+        return self._contacts.touches
+
+    @property
+    def begun(self) -> tuple[Touch, ...]:
+        """Contacts that began in the last tick."""
+        return self._contacts.begun
+
+    @property
     def donor_gap(self) -> float:
-        """Distance [m] between the hulls of robot and donor."""
-        x, y = self.donor.body.position
-        return math.hypot(x - self.robot.pose.x, y - self.robot.pose.y) - self.robot.build.radius - self.donor.reach
+        """Distance [m] between the hulls of robot and donor; endless without a donor."""
+        if self.donor is None:
+            return math.inf
+        way = math.hypot(self.donor.x - self.robot.pose.x, self.donor.y - self.robot.pose.y)
+        return way - self.robot.build.radius - self.donor.reach
 
     @property
     def home_distance(self) -> float:
         """Distance [m] of the robot from where it started, centre to centre."""
         return math.hypot(self.robot.pose.x - self.start.x, self.robot.pose.y - self.start.y)
 
-    def clearance(self) -> float:
-        """Distance [m] from the hull to the nearest thing, at most `FAR`; negative where they overlap."""
-        robot = self.robot
-        found = self._space.point_query_nearest((robot.pose.x, robot.pose.y), FAR, robot.shape.filter)
-        return FAR if found is None else min(FAR, found.distance - robot.build.radius)
+    def clearance(self, below: float = math.inf) -> float:
+        """Distance [m] from the hull to the nearest thing, at most `FAR`; negative where they overlap.
 
-    # --- contacts ---------------------------------------------------------------------------------
+        For a hull that is not round, to a centimetre. below [m]: where it is certainly more, `below` may be given.
+        """
+        if self._room >= below:
+            return below
+        self._room = self._distance_around()
+        if self._hull is None or self._room > below:
+            return min(FAR, self._room)
+        return self._clearance_of_points(self._hull)
+
+    def _clearance_of_points(self, hull: Sequence[Vec2]) -> float:
+        robot = self.robot
+        reach = self._room + 2 * robot.build.radius
+        robot.tell()
+        places = [robot.body.local_to_world(point) for point in hull]
+        found = [self._space.point_query_nearest(place, reach, robot.shapes[0].filter) for place in places]
+        return min([FAR, *(near.distance for near in found if near is not None)])
+
+
+class _Contacts:
+    """What touches the robot; curbs that it climbs do not count."""
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        self._by_shape = {shape: thing for thing in world.things for shape in thing.shapes}
+        self._touching: dict[int, Touch] = {}
+        self._last: dict[int, Touch] = {}
+        self._bearings: dict[int, list[float]] = {}
+        self.begun: tuple[Touch, ...] = ()
+        self.climbing = False
+        world._space.on_collision(ROBOT, OTHER, begin=self._begin, pre_solve=self._touch)
+
+    def clear(self) -> None:
+        """Before a tick."""
+        if self._touching or self.begun or self.climbing:
+            self.begun, self._touching, self._bearings, self.climbing = (), {}, {}, False
+
+    @property
+    def touches(self) -> tuple[Touch, ...]:
+        """In the order in which they were found."""
+        return tuple(self._touching.values())
+
+    @property
+    def bearings(self) -> tuple[float, ...]:
+        """Of the contacts [rad, robot frame]."""
+        return tuple(bearing for bearings in self._bearings.values() for bearing in bearings)
 
     def _begin(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: object) -> None:
         thing, normal = self._by_shape[arbiter.shapes[1]], arbiter.normal
-        towards = self.robot.body.velocity.dot(normal)
+        if self._is_climbed(thing):
+            return
+        towards = normal.dot(self._world.robot.asked)
         against = -thing.body.velocity.dot(normal)
-        touch = Touch(thing.placed.id, self.time, towards > max(TOUCH_SPEED, against))
-        self._last_touch[thing.index] = touch
+        touch = Touch(thing.placed.id, self._world.time, towards > max(TOUCH_SPEED, against))
+        self._last[thing.index] = touch
         self.begun += (touch,)
 
     def _touch(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: object) -> None:
         """Each sub-step while hulls touch; `separate` would be called from the deallocation of the space as well."""
-        index = self._by_shape[arbiter.shapes[1]].index
-        self._touching[index] = self._last_touch[index]
+        thing = self._by_shape[arbiter.shapes[1]]
+        if self._is_climbed(thing):
+            arbiter.process_collision = False
+            self.climbing = True
+            return
+        if thing.index not in self._last:
+            self._begin(arbiter, _space, _data)
+        self._touching[thing.index] = self._last[thing.index]
+        body = self._world.robot.body
+        here = Pose(body.position.x, body.position.y, wrap(body.angle))
+        self._bearings[thing.index] = [bearing(here, place) for place in _places(arbiter)]
+
+    def _is_climbed(self, thing: Thing) -> bool:
+        return thing.placed.height <= self._world.robot.climbs()
+
+
+class _Moving:
+    """The things that are ever elsewhere, and what moves them."""
+
+    def __init__(self, things: tuple[Thing, ...]) -> None:
+        self.mobile = tuple(thing for thing in things if thing.placed.moves)
+        self.movers = tuple(mover for thing in things for mover in _movers(thing))
+        self._rollers = tuple(mover for mover in self.movers if isinstance(mover, Roller))
+        self._pushable = tuple(thing for thing in self.mobile if thing.placed.mass > 0)
+        self._driven = tuple(thing for thing in self.mobile if thing.placed.mass == 0)
+
+    def discs(self) -> tuple[Disc, ...]:
+        """All that can move, as discs."""
+        return tuple(Disc(t.index, t.x, t.y, t.reach) for t in self.mobile if t.present)
+
+    def stir(self) -> bool:
+        """Whether anything that can be pushed moves, or is about to."""
+        return any(roller.rolling for roller in self._rollers) or any(
+            thing.speed > AT_REST or abs(thing.turn) > AT_REST for thing in self._pushable
+        )
+
+    def fastest(self) -> float:
+        """Speed [m/s] of the fastest driven thing."""
+        return max([thing.speed for thing in self._driven], default=0.0)
+
+    def near_pushable(self, period: float) -> bool:
+        """Whether a driven thing may touch one that can be pushed within a tick."""
+        if not self._pushable:
+            return False
+        return any(self._nears(thing, period) for thing in self._driven if thing.present and thing.speed > 0)
+
+    def _nears(self, thing: Thing, period: float) -> bool:
+        need = thing.speed * period + MARGIN + thing.reach
+        return any(math.hypot(thing.x - other.x, thing.y - other.y) < need + other.reach for other in self._pushable)
+
+    def glide(self, period: float) -> None:
+        """Driven things move on."""
+        for thing in self._driven:
+            if thing.vx or thing.vy or thing.turn:
+                thing.glide(period)
+
+    def tell(self) -> None:
+        """The bodies what is so."""
+        for thing in self.mobile:
+            thing.tell()
+
+    def ask(self) -> None:
+        """The bodies what is so."""
+        for thing in self.mobile:
+            thing.ask()
+
+
+def _time(tick: int, period: float) -> float:
+    """Without the rounding of a running sum: ticks of 0.1 s give whole tenths."""
+    rate = round(1 / period)
+    return tick / rate if rate * period == 1.0 else tick * period
 
 
 def _space() -> pymunk.Space:
     space = pymunk.Space()
     space.damping, space.iterations, space.collision_slop = DAMPING, ITERATIONS, SLOP
     return space
+
+
+def _scene(things: tuple[Thing, ...]) -> Scene:
+    placed = [thing.placed for thing in things]
+    scene = Scene([p.outline for p in placed], [p.pose for p in placed], [p.height for p in placed])
+    for thing in things:
+        if thing.placed.moves:
+            scene.place(thing.index, thing.pose)
+    return scene
+
+
+def _outline_points(robot: Robot) -> tuple[Vec2, ...] | None:
+    """Places on the hull, `OUTLINE_STEP` apart; None for a round one."""
+    match robot.build.hull:
+        case Polygon(vertices):
+            points = []
+            for a, b in zip(vertices, (*vertices[1:], vertices[0]), strict=True):
+                steps = math.ceil(math.dist(a, b) / OUTLINE_STEP)
+                points += [(a[0] + (b[0] - a[0]) * k / steps, a[1] + (b[1] - a[1]) * k / steps) for k in range(steps)]
+            return tuple(points)
+        case Circle() | _:
+            return None
+
+
+def _places(arbiter: pymunk.Arbiter) -> list[Vec2]:
+    """Where hulls meet: the points of contact and, where they meet along a side, its middle."""
+    places = [(point.point_a.x, point.point_a.y) for point in arbiter.contact_point_set.points]
+    if len(places) > 1:
+        (ax, ay), (bx, by) = places[0], places[-1]
+        places.append(((ax + bx) / 2, (ay + by) / 2))
+    return places
 
 
 def _movers(thing: Thing) -> tuple[Mover, ...]:
@@ -213,5 +454,7 @@ def _movers(thing: Thing) -> tuple[Mover, ...]:
             return (Roller(thing, roll),)
         case Shift() as shift:
             return (Shifter(thing, shift),)
+        case Keyframes() as keyframes:
+            return (Keyframed(thing, keyframes),)
         case None:
             return ()

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 from importlib import import_module
+from keyword import iskeyword
 
 import click
 
@@ -15,10 +16,14 @@ COMMANDS = {
     "check": "Say what is wrong with a plan before it runs.",
     "compile": "Compile a plan and say what a tick costs.",
     "diff": "Say in which situations two plans differ.",
+    "export": "Make a table or a film of a recording.",
     "fmt": "Lay out the text of plans, comments and all.",
+    "import": "Make a scenario of a world of another format.",
     "list": "List plans, libraries and what they offer.",
     "prove": "Prove what a plan promises, or show how it breaks it.",
+    "repair": "Make a whole file of a recording that was cut short.",
     "simulate": "Drive a robot through a world by a plan.",
+    "sweep": "Run many episodes of a plan and keep a row of each.",
     "test": "Run the tests that stand in a plan.",
     "tick": "Run a plan alone: percepts in, outputs out, one JSON object a line.",
     "ways": "List the ways of a plan; --paper counts them as the paper does.",
@@ -36,7 +41,7 @@ class Commands(click.Group):
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:  # noqa: ARG002
         if name not in COMMANDS:
             return None
-        command = import_module(f"rplan.apps.commands.{name}").command
+        command = import_module(f"rplan.apps.commands.{name}{'_' if iskeyword(name) else ''}").command
         assert isinstance(command, click.Command)
         return command
 

@@ -64,7 +64,7 @@ def scenario_file(given: str | None, plan: Path) -> Path:
     """The scenario that a user means; without one the only one beside the plan."""
     if given is not None:
         path = Path(given)
-        if path.is_file():
+        if path.is_file() or Path(given.rpartition("#")[0]).is_file():
             return path
         if path.is_dir():
             raise InputError(f"{given} is a folder; a scenario is a YAML file")

@@ -21,7 +21,8 @@ from rplan.ways.way import TakenWay
 from sim.episode import Episode
 from sim.judge import Verdict
 from sim.recording import Recorder
-from sim.scenarios.scenario import Scenario, loads
+from sim.scenarios.format import loads
+from sim.scenarios.scenario import Scenario
 
 OPEN = "nothing"
 """Shown for a channel that a tick leaves open."""
@@ -69,6 +70,7 @@ class Run:
     holes: int
     faults: tuple[str, ...]
     wall: float
+    period: float
 
     @property
     def real_time_factor(self) -> float:
@@ -76,10 +78,22 @@ class Run:
         return self.verdict.duration / self.wall if self.wall > 0 else float("inf")
 
 
+SCENARIO_SUFFIXES = (".yaml", ".yml")
+
+
 def load_world(path: Path) -> World:
-    """The scenario in a file; `ScenarioError`, `OSError`."""
-    text = path.read_bytes().decode("utf-8", errors="replace")
-    return World(loads(text, path.name), text)
+    """The scenario in a file, or the world of another format in it (FILE#3: one of several).
+
+    Raises ScenarioError, WorldFileError, OSError.
+    """
+    if path.suffix.lower() in SCENARIO_SUFFIXES:
+        text = path.read_bytes().decode("utf-8", errors="replace")
+        if not ("resolution:" in text and "image:" in text):
+            return World(loads(text, path.name), text)
+    from sim.scenarios.importers import Options, load, split
+
+    file, number = split(str(path))
+    return World(*load(file, Options(world=number)))
 
 
 @dataclass(slots=True)
@@ -101,7 +115,7 @@ class _Watch:
         if not episode.over:
             self._count(episode.time)
         if self.recorder is not None:
-            self.recorder.tick(episode.time, episode.snapshot(), episode.note)
+            self.recorder.tick(episode.time, episode.snapshot(), episode.note, episode.world.sense())
         if self.progress is not None and self.ticks % 50 == 0:
             doing = ", ".join(_sent(self.last, channel) for channel in self.commands)
             self.progress(episode.time, f"{episode.judge.stage}: {doing}")
@@ -162,7 +176,7 @@ def simulate(
     Raises `PlanError` (unbound functions), `ScenarioError` (no layout for this seed), `OSError`.
     """
     brain = PlanBrain(compiled, libraries)
-    episode = Episode(world.scenario, seed)
+    episode = Episode(world.scenario, seed, compiled.goals.period)
     commands = tuple(o.name for o in compiled.goals.outputs if o.type is not None and o.type.name == "command")
     with _recorder(record, compiled, world, episode) as recorder:
         watch = _Watch(brain, recorder, progress, commands)
@@ -185,6 +199,7 @@ def simulate(
         holes=watch.holes,
         faults=tuple(watch.faults),
         wall=wall,
+        period=compiled.goals.period,
     )
 
 

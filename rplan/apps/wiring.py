@@ -24,7 +24,7 @@ from rplan.runtime.controller import Controller, Tick, UnboundError
 from rplan.runtime.robot import Channels, Crew
 from rplan.runtime.tick import Decider
 from rplan.runtime.trace import Trace
-from sim.world import TICK
+from sim.world import LONGEST, SHORTEST
 
 
 def signature(library: Library) -> LibrarySignature:
@@ -121,11 +121,11 @@ def crew(compiled: Compiled, libraries: Catalogue | None = None) -> Crew[Command
 class PlanBrain:
     """A plan as the brain of an episode.
 
-    `PlanError` if nothing brings a function of the plan to life, or if a tick of it is not one of the world.
+    `PlanError` if nothing brings a function of the plan to life, or if the world cannot tick as it does.
     """
 
     def __init__(self, compiled: Compiled, libraries: Catalogue | None = None) -> None:
-        _same_tick(compiled)
+        _check_tick(compiled)
         self.compiled = compiled
         self._libraries = libraries or catalogue()
         self.trace = Trace(compiled.ways, _show)
@@ -166,12 +166,14 @@ class PlanBrain:
         self._controller.close()
 
 
-def _same_tick(compiled: Compiled) -> None:
+def _check_tick(compiled: Compiled) -> None:
+    """The world ticks as the plan does, within bounds."""
     period = compiled.goals.period
-    if period != TICK:
-        message = f"a tick of the plan takes {period:g} s, and one of the simulated world {TICK:g} s"
-        hint = f"write `:period {TICK:g}s`"
-        raise PlanError([Diagnostic("other-tick", "error", message, compiled.plan.header.span, hint=hint)])
+    if not SHORTEST <= period <= LONGEST:
+        message = f"a tick of the plan takes {period:g} s; the simulated world can have {SHORTEST:g} s to {LONGEST:g} s"
+        raise PlanError(
+            [Diagnostic("other-tick", "error", message, compiled.plan.header.span, hint="write `:period 0.1s`")]
+        )
 
 
 def plan_header(compiled: Compiled) -> Mapping[str, object]:

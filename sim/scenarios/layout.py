@@ -11,26 +11,38 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from itertools import count
+from dataclasses import dataclass, replace
+from itertools import count, pairwise
 
 from numpy.random import Generator
 
 from behaviours.interface import Pose, Vec2, wrap
 from sim.frames import distance_to_segment
-from sim.raycast import Circle, Outline, Polygon, reach
-from sim.scenarios.scenario import SCATTERED, Amount, Between, KeepClear, Place, Scatter, Scenario, ThingSpec
+from sim.raycast import Circle, Outline, Polygon, Rings, reach
+from sim.scenarios.scenario import (
+    SCATTERED,
+    Amount,
+    Between,
+    Change,
+    DonorSpec,
+    KeepClear,
+    Place,
+    Scatter,
+    Scenario,
+    ThingSpec,
+)
 from sim.scenarios.schema import Problem, ScenarioError
 from sim.things.thing import Placed, Travel
 
 DONOR = "donor"
 ATTEMPTS, DRAWS = 100, 200
+MOST_WORK = 300_000  # corners that are looked at for one group of scattered things
 Strip = tuple[Vec2, Vec2, float]
 
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """Where everything stands at the start; the first of the things is the donor."""
+    """Where everything stands at the start; where the scenario has a donor, it is the first of the things."""
 
     start: Pose
     things: tuple[Placed, ...]
@@ -39,23 +51,36 @@ class Layout:
 def lay_out(scenario: Scenario, chance: Generator) -> Layout:
     """Draw what the scenario leaves open. Raises ScenarioError where scattered things find no room."""
     start = Pose(*scenario.robot.start, wrap(_drawn(scenario.robot.heading, chance)))
-    things = [_donor(scenario)]
+    things = [] if scenario.donor is None else [_donor(scenario.donor)]
     for spec in scenario.things:
         there, heading = chance.random() < spec.present, _drawn(spec.heading, chance)
         if there:
-            things.append(_placed(spec, spec.at, heading, things))
+            things.append(_placed(spec, spec.at, heading))
     for scatter in scenario.scatter:
         things += _scattered(scatter, scenario, things, chance)
+    things = _named(things)
     _check_start(scenario, things)
-    return Layout(start, tuple(things))
+    changing = {event.what.thing for event in scenario.events if not isinstance(event.what, Change)}
+    return Layout(start, tuple(replace(thing, changes=thing.id in changing) for thing in things))
 
 
 def _check_start(scenario: Scenario, things: list[Placed]) -> None:
     for thing in things:
-        if distance(scenario.robot.start, thing.outline, thing.pose) < scenario.robot.build.radius:
+        if distance(scenario.robot.start, thing.outline, thing.pose) < _inner(scenario.robot.build.hull):
             raise ScenarioError(
                 [Problem(scenario.name, 1, 1, "robot.start", f"the robot stands in {thing.id!r} there")]
             )
+
+
+def _inner(hull: Outline) -> float:
+    """Radius [m] of the circle round the origin that the hull encloses."""
+    match hull:
+        case Circle(radius):
+            return radius
+        case Polygon(vertices):
+            return min(distance_to_segment((0.0, 0.0), a, b) for a, b in pairwise((*vertices, vertices[0])))
+        case Rings():
+            return 0.0
 
 
 def _drawn(amount: Amount, chance: Generator) -> float:
@@ -66,25 +91,36 @@ def _drawn(amount: Amount, chance: Generator) -> float:
             return amount
 
 
-def _donor(scenario: Scenario) -> Placed:
-    spec = scenario.donor
+def _donor(spec: DonorSpec) -> Placed:
     return Placed(DONOR, DONOR, Circle(spec.radius), Pose(*spec.at, 0.0), spec.height, motion=spec.move)
 
 
-def _placed(spec: ThingSpec, at: Vec2, heading: float, before: list[Placed]) -> Placed:
-    taken = [thing.id for thing in before]
-    free = (name for number in count(1) if (name := f"{spec.kind}-{number}") not in taken)
-    name = spec.id or next(free)
-    return Placed(name, spec.kind, spec.outline, Pose(*at, wrap(heading)), spec.height, spec.mass, spec.motion)
+def _placed(spec: ThingSpec, at: Vec2, heading: float) -> Placed:
+    return Placed(spec.id, spec.kind, spec.outline, Pose(*at, wrap(heading)), spec.height, spec.mass, spec.motion)
+
+
+def _named(things: list[Placed]) -> list[Placed]:
+    """Those without a name get their kind and the next number that is free."""
+    taken = {thing.id for thing in things}
+    numbers: dict[str, Iterator[int]] = {}
+    named = []
+    for thing in things:
+        if not thing.id:
+            free = numbers.setdefault(thing.kind, count(1))
+            name = next(name for number in free if (name := f"{thing.kind}-{number}") not in taken)
+            thing = replace(thing, id=name)
+        named.append(thing)
+    return named
 
 
 def _scattered(scatter: Scatter, scenario: Scenario, before: list[Placed], chance: Generator) -> list[Placed]:
     strips = [*_strips(scatter.keep_clear, scenario), *_lanes(before)]
     robot = Placed("robot", "robot", Circle(scenario.robot.build.radius), Pose(*scenario.robot.start), 1.0)
     wanted = int(chance.integers(scatter.count[0], scatter.count[1] + 1))
+    work = _Work(MOST_WORK)
     for _ in range(ATTEMPTS):
         new: list[Placed] = []
-        while len(new) < wanted and (one := _one(scatter, strips, [robot, *before, *new], chance)):
+        while len(new) < wanted and (one := _one(scatter, strips, [robot, *before, *new], chance, work)):
             new.append(one)
         if len(new) == wanted:
             return new
@@ -94,16 +130,35 @@ def _scattered(scatter: Scatter, scenario: Scenario, before: list[Placed], chanc
     raise ScenarioError([Problem(scenario.name, 1, 1, "scatter", message)])
 
 
-def _one(scatter: Scatter, strips: list[Strip], others: list[Placed], chance: Generator) -> Placed | None:
+@dataclass(slots=True)
+class _Work:
+    """How many corners may still be looked at."""
+
+    left: int
+
+    def do(self, outline: Outline) -> bool:
+        """Look at an outline; whether there was any left for it."""
+        match outline:
+            case Circle():
+                self.left -= 1
+            case Polygon(vertices):
+                self.left -= len(vertices)
+            case Rings(rings):
+                self.left -= sum(map(len, rings))
+        return self.left >= 0
+
+
+def _one(scatter: Scatter, strips: list[Strip], others: list[Placed], chance: Generator, work: _Work) -> Placed | None:
     spec = SCATTERED[scatter.kinds[int(chance.integers(len(scatter.kinds)))]]
     xmin, ymin, xmax, ymax = scatter.region
     for _ in range(DRAWS):
         at = float(chance.uniform(xmin, xmax)), float(chance.uniform(ymin, ymax))
         radius = reach(spec.outline)
         if all(distance_to_segment(at, a, b) >= by + radius for a, b, by in strips) and all(
-            distance(at, other.outline, other.pose) - radius >= scatter.min_gap for other in others
+            work.do(other.outline) and distance(at, other.outline, other.pose) - radius >= scatter.min_gap
+            for other in others
         ):
-            return _placed(spec, at, 0.0, others)
+            return _placed(spec, at, 0.0)
     return None
 
 
@@ -113,9 +168,13 @@ def _strips(keep_clear: tuple[KeepClear, ...], scenario: Scenario) -> Iterator[S
 
 
 def _point(place: Place, scenario: Scenario) -> Vec2:
-    if isinstance(place, str):
-        return scenario.robot.start if place == "robot" else scenario.donor.at
-    return place
+    if not isinstance(place, str):
+        return place
+    if place == "robot":
+        return scenario.robot.start
+    if scenario.donor is None:
+        raise ScenarioError([Problem(scenario.name, 1, 1, "scatter", "keeps clear of a donor, and there is none")])
+    return scenario.donor.at
 
 
 def _lanes(things: list[Placed]) -> Iterator[Strip]:
@@ -135,18 +194,25 @@ def _half_width(outline: Outline) -> float:
             return radius
         case Polygon(vertices):
             return max(abs(y) for _, y in vertices)
+        case Rings():
+            return reach(outline)
 
 
 def distance(point: Vec2, outline: Outline, pose: Pose) -> float:
-    """Distance [m] of the point from the outline at a pose; within a polygon 0, within a circle less."""
+    """Distance [m] of the point from the outline at a pose; within a polygon or rings 0, within a circle less."""
     match outline:
         case Circle(radius):
             return math.dist(point, (pose.x, pose.y)) - radius
         case Polygon(vertices):
-            c, s = math.cos(pose.theta), math.sin(pose.theta)
-            dx, dy = point[0] - pose.x, point[1] - pose.y
-            inner = c * dx + s * dy, c * dy - s * dx
-            pairs = list(zip(vertices, (*vertices[1:], vertices[0]), strict=True))
-            if all((b[0] - a[0]) * (inner[1] - a[1]) >= (b[1] - a[1]) * (inner[0] - a[0]) for a, b in pairs):
-                return 0.0
-            return min(distance_to_segment(inner, a, b) for a, b in pairs)
+            return _distance_to_rings(point, (vertices,), pose)
+        case Rings(rings):
+            return _distance_to_rings(point, rings, pose)
+
+
+def _distance_to_rings(point: Vec2, rings: tuple[tuple[Vec2, ...], ...], pose: Pose) -> float:
+    c, s = math.cos(pose.theta), math.sin(pose.theta)
+    dx, dy = point[0] - pose.x, point[1] - pose.y
+    x, y = c * dx + s * dy, c * dy - s * dx
+    pairs = [pair for ring in rings for pair in pairwise((*ring, ring[0]))]
+    inside = sum((a[1] > y) != (b[1] > y) and x < a[0] + (y - a[1]) * (b[0] - a[0]) / (b[1] - a[1]) for a, b in pairs)
+    return 0.0 if inside % 2 else min(distance_to_segment((x, y), a, b) for a, b in pairs)

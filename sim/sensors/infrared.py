@@ -1,7 +1,7 @@
 """The reader of the donor's infra-red beacon, on the head.
 
-Takes: where the head looks, where the beacon is, what stands between, the weather, chance. Gives: `IrReading`, fresh
-once a second while the head is still. Leaves alone: reflections.
+Takes: where the head looks, where the beacon is, what stands between, the weather, chance. Gives: `IrReading`, by
+default once a second while the head is still. Leaves alone: reflections.
 
 Signal over noise is 3.2 (25 ft / r)^2 cos^2(a) within 30 degrees of the optical axis, and the beacon is heard above
 3: so 25 ft is the edge. Noise of that ratio: sd 0.2; of the bearing: sd 0.3 degrees. With these a sweep in steps of two
@@ -15,81 +15,59 @@ donor. Wind rocks the beacon: a jitter of its bearing, and gusts.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 
-import numpy as np
+from numpy.random import Generator
 
-from behaviours.interface import HeadState, IrReading, Pose, Vec2, wrap
+from behaviours.interface import IrReading, Pose, Vec2, wrap
 from sim.frames import FOOT, bearing
 from sim.raycast import Scene, cast, crossings, ray
+from sim.sensors.build import InfraredBuild
+from sim.sensors.truth import Truth
 
 SIGNAL, EDGE, HEARD = 3.2, 25 * FOOT, 3.0
 HALF_FIELD = math.radians(30)
 SUN_NOISE, SUN_NEAR = 10.0, math.radians(25)
 SHADE_WITHIN, SHADE_HEIGHT = 3.0, 1.5  # [m]: somebody this tall, this close behind the beacon, keeps the sun off
 BEAM_HEIGHT = 0.8  # [m]
+NEAREST = 0.1  # [m] from where the signal grows no more
 NEVER = IrReading(0.0, False, 0.0, False, math.nan, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
-class InfraredBuild:
-    """period [s] of fixations; sd of the signal-to-noise ratio; offset_sd [rad]."""
+class BeaconReader:
+    """The reader of one robot. Without a donor it hears nothing."""
 
-    period: float = 1.0
-    sd: float = 0.2
-    offset_sd: float = math.radians(0.3)
+    def __init__(self, build: InfraredBuild, chance: Generator) -> None:
+        self._build, self._chance = build, chance
 
-
-@dataclass(frozen=True, slots=True)
-class Weather:
-    """sun: its bearing [rad, world], None when it does not shine.
-
-    jitter, gust [rad]: sd of what the wind does to the beacon's bearing; gusts: chance of a gust at a fixation.
-    """
-
-    sun: float | None = None
-    jitter: float = 0.0
-    gust: float = 0.0
-    gusts: float = 0.0
-
-
-class InfraredReader:
-    """The reader. `sense` is called once a tick."""
-
-    def __init__(self, build: InfraredBuild, weather: Weather, chance: np.random.Generator) -> None:
-        self._build, self._weather, self._chance = build, weather, chance
-        self._reading, self._used = NEVER, 0.0
-
-    def sense(
-        self, stamp: float, head: HeadState, still_for: float, pose: Pose, beacon: Vec2, donor: int, scene: Scene
-    ) -> IrReading:
-        """still_for [s]: how long the head has looked there; donor: index of the thing that carries the beacon."""
-        since = min(still_for, stamp - self._used)
-        if head.settled and since >= self._build.period - 1e-6:
-            self._used = stamp
-            self._reading = self._fixation(stamp, head.pan, pose, beacon, donor, scene)
-        elif self._reading.fresh:
-            self._reading = replace(self._reading, fresh=False)
-        return self._reading
-
-    def _fixation(self, stamp: float, pan: float, pose: Pose, beacon: Vec2, donor: int, scene: Scene) -> IrReading:
-        noise, jitter, offset_noise, gust = self._chance.standard_normal(4)
-        gusty = self._chance.random() < self._weather.gusts
-        offset = wrap(bearing(pose, beacon) - pan + self._weather.jitter * jitter + self._weather.gust * gust * gusty)
-        visible = abs(offset) < HALF_FIELD and _in_sight(pose, beacon, donor, scene)
-        signal = SIGNAL * (EDGE / math.dist((pose.x, pose.y), beacon)) ** 2 * math.cos(offset) ** 2 if visible else 0.0
-        strength = max(0.0, signal / self._background(pose, beacon, donor, scene) + self._build.sd * noise)
-        detected = bool(visible and strength > HEARD)
+    def measure(self, truth: Truth) -> tuple[IrReading]:
+        """One fixation."""
+        stamp, pan, beacon = truth.time, truth.head.pan, truth.beacon
+        noise, jitter, offset_noise, gust = self._chance.standard_normal(4).tolist()
+        gusty = float(self._chance.random()) < truth.weather.gusts
+        if beacon is None:
+            return (IrReading(stamp, True, pan, False, math.nan, max(0.0, self._build.sd * noise)),)
+        rocked = truth.weather.jitter * jitter + truth.weather.gust * gust * gusty
+        offset = wrap(bearing(truth.pose, beacon) - pan + rocked)
+        visible = abs(offset) < HALF_FIELD and _in_sight(truth.pose, beacon, truth.donor, truth.scene())
+        signal = _signal(truth.pose, beacon, offset) / _background(truth, beacon) if visible else 0.0
+        strength = max(0.0, signal + self._build.sd * noise)
+        detected = visible and strength > HEARD
         measured = offset + self._build.offset_sd * offset_noise if detected else math.nan
-        return IrReading(stamp, True, pan, detected, measured, strength)
+        return (IrReading(stamp, True, pan, detected, measured, strength),)
 
-    def _background(self, pose: Pose, beacon: Vec2, donor: int, scene: Scene) -> float:
-        """Noise, relative to a day without sun."""
-        sun = self._weather.sun
-        if sun is None or abs(bearing(Pose(pose.x, pose.y, sun), beacon)) > SUN_NEAR:
-            return 1.0
-        behind = crossings(ray(beacon, sun, SHADE_HEIGHT), SHADE_WITHIN, scene).thing
-        return 1.0 if (behind != donor).any() else SUN_NOISE
+
+def _signal(pose: Pose, beacon: Vec2, offset: float) -> float:
+    distance = max(math.dist((pose.x, pose.y), beacon), NEAREST)
+    return SIGNAL * (EDGE / distance) ** 2 * math.cos(offset) ** 2
+
+
+def _background(truth: Truth, beacon: Vec2) -> float:
+    """Noise, relative to a day without sun."""
+    pose, sun = truth.pose, truth.weather.sun
+    if sun is None or abs(bearing(Pose(pose.x, pose.y, sun), beacon)) > SUN_NEAR:
+        return 1.0
+    behind = crossings(ray(beacon, sun, SHADE_HEIGHT), SHADE_WITHIN, truth.scene()).thing
+    return 1.0 if (behind != truth.donor).any() else SUN_NOISE
 
 
 def _in_sight(pose: Pose, beacon: Vec2, donor: int, scene: Scene) -> bool:

@@ -13,45 +13,31 @@ A fixation takes 9 s, so that a search of 32 fixations with its head movements l
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.random import Generator
 
 from behaviours.interface import HeadState, Pose, StereoReading
 from sim.raycast import Scene, crossings, ray
+from sim.sensors.build import StereoBuild
+from sim.sensors.truth import Truth
 
 FARTHEST = 30.0  # [m]
 LEVEL = 1e-6  # [rad] of tilt below which the ray never comes down
 
 
-@dataclass(frozen=True, slots=True)
-class StereoBuild:
-    """period [s] of a fixation; camera_height [m]; linear, quadratic: the sd is linear * z + quadratic * z^2."""
+class VergingCameras:
+    """The verging cameras of one robot."""
 
-    period: float = 9.0
-    camera_height: float = 1.2
-    linear: float = 0.003
-    quadratic: float = 0.001
-
-
-class Stereo:
-    """The verging cameras. `sense` is called once a tick."""
-
-    def __init__(self, build: StereoBuild, chance: np.random.Generator) -> None:
+    def __init__(self, build: StereoBuild, chance: Generator) -> None:
         self._build, self._chance = build, chance
-        self._reading = StereoReading(0.0, False, 0.0, 0.0, math.nan, build.camera_height)
-        self._used = 0.0
+        self.first = (StereoReading(0.0, False, 0.0, 0.0, math.nan, build.camera_height),)
 
-    def sense(self, stamp: float, head: HeadState, still_for: float, pose: Pose, scene: Scene) -> StereoReading:
-        """still_for [s]: how long head and base have not moved."""
-        since = min(still_for, stamp - self._used)
-        if head.settled and since >= self._build.period - 1e-6:
-            self._used = stamp
-            slant = self._noisy(slant_range(self._build.camera_height, head, pose, scene))
-            self._reading = replace(self._reading, stamp=stamp, fresh=True, pan=head.pan, tilt=head.tilt, range=slant)
-        elif self._reading.fresh:
-            self._reading = replace(self._reading, fresh=False)
-        return self._reading
+    def measure(self, truth: Truth) -> tuple[StereoReading]:
+        """One fixation."""
+        head, height = truth.head, self._build.camera_height
+        slant = self._noisy(slant_range(height, head, truth.pose, truth.scene()))
+        return (StereoReading(truth.time, True, head.pan, head.tilt, slant, height),)
 
     def _noisy(self, slant: float) -> float:
         sd = self._build.linear * slant + self._build.quadratic * slant * slant

@@ -25,6 +25,11 @@ class Roller:
         self._velocity = (0.0, 0.0)
         self._done = False
 
+    @property
+    def rolling(self) -> bool:
+        """Whether it is on its way."""
+        return self._until < math.inf and not self._done
+
     def prepare(self, around: Surroundings) -> None:
         """Begin, go on, or come to rest."""
         if self._done:
@@ -36,7 +41,7 @@ class Roller:
             self._steer(around)
 
     def _steer(self, around: Surroundings) -> None:
-        x, y = self._thing.body.position
+        x, y = self._thing.x, self._thing.y
         way = around.gap_to_robot((x, y), self._thing.reach) - self._roll.gap
         if way <= 0 or around.time >= self._until:
             self._come_to_rest()
@@ -46,7 +51,7 @@ class Roller:
 
     def _come_to_rest(self) -> None:
         self._done = True
-        self._thing.body.velocity = (0.0, 0.0)
+        self._thing.go(0.0, 0.0, self._thing.turn)
         self._thing.body.velocity_func = pymunk.Body.update_velocity
 
     def _drive(self, body: pymunk.Body, _gravity: tuple[float, float], _damping: float, _dt: float) -> None:

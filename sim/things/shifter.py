@@ -29,9 +29,9 @@ class Shifter:
             self._go(around.dt)
 
     def _go(self, dt: float) -> None:
-        body = self._thing.body
-        dx, dy = self._goal[0] - body.position.x, self._goal[1] - body.position.y
+        thing = self._thing
+        dx, dy = self._goal[0] - thing.x, self._goal[1] - thing.y
         left = math.hypot(dx, dy)
         self._done = left < 1e-9
         share = 0.0 if self._done else min(self._shift.speed, left / dt) / left
-        body.velocity = dx * share, dy * share
+        thing.go(dx * share, dy * share)

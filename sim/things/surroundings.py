@@ -6,6 +6,7 @@ Takes: nothing. Gives: `Surroundings` and when a trigger goes off. Leaves alone:
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from behaviours.interface import Vec2
@@ -30,7 +31,7 @@ class Surroundings:
     dt: float
     robot: Disc
     robot_way: float
-    others: tuple[Disc, ...]
+    others: Callable[[], tuple[Disc, ...]]
 
     def gap_to_robot(self, place: Vec2, radius: float) -> float:
         """Distance [m] between the hulls."""
@@ -43,6 +44,6 @@ def goes_off(trigger: Trigger, thing: Thing, around: Surroundings) -> bool:
         case At(time):
             return around.time >= time
         case RobotWithin(distance):
-            return around.gap_to_robot(thing.body.position, thing.reach) <= distance
+            return around.gap_to_robot((thing.x, thing.y), thing.reach) <= distance
         case RobotLeft(distance):
             return around.robot_way >= distance

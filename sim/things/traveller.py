@@ -10,7 +10,7 @@ import math
 
 from behaviours.interface import wrap
 from sim.frames import approach
-from sim.raycast import Circle, Polygon
+from sim.raycast import Circle, Polygon, Rings
 from sim.things.surroundings import Disc, Surroundings, goes_off
 from sim.things.thing import At, Thing, Travel
 
@@ -68,23 +68,23 @@ class Traveller:
 
     def _arrive(self) -> None:
         self._travelling = False
-        self._thing.body.velocity, self._thing.body.angular_velocity = (0.0, 0.0), 0.0
+        self._thing.go(0.0, 0.0)
         if self._travel.then == "vanish":
             self._thing.remove()
 
     def _set_velocity(self, dt: float) -> None:
-        """So that the body is at its place on the track when the tick is over."""
-        body, a, heading = self._thing.body, self._travel.track[self._leg], self._direction(self._leg)
+        """So that the thing is at its place on the track when the tick is over."""
+        thing, a, heading = self._thing, self._travel.track[self._leg], self._direction(self._leg)
         x, y = a.x + self._along * math.cos(heading), a.y + self._along * math.sin(heading)
-        body.velocity = (x - body.position.x) / dt, (y - body.position.y) / dt
         most = self._travel.turn_rate
-        body.angular_velocity = max(-most, min(most, wrap(heading - body.angle) / dt))
+        turn = max(-most, min(most, wrap(heading - thing.theta) / dt))
+        thing.go((x - thing.x) / dt, (y - thing.y) / dt, turn)
 
     def _is_blocked(self, around: Surroundings) -> bool:
-        heading, place = self._direction(self._leg), self._thing.body.position
+        heading, thing = self._direction(self._leg), self._thing
         c, s = math.cos(heading), math.sin(heading)
-        heeded = (around.robot, *around.others) if self._travel.heeds_all else (around.robot,)
-        return any(self._in_lane(disc, place.x, place.y, c, s) for disc in heeded if disc.index != self._thing.index)
+        heeded = (around.robot, *around.others()) if self._travel.heeds_all else (around.robot,)
+        return any(self._in_lane(disc, thing.x, thing.y, c, s) for disc in heeded if disc.index != thing.index)
 
     def _in_lane(self, disc: Disc, x: float, y: float, c: float, s: float) -> bool:
         ahead = c * (disc.x - x) + s * (disc.y - y)
@@ -110,3 +110,5 @@ def _half_sizes(thing: Thing) -> tuple[float, float]:
             return radius, radius
         case Polygon(vertices):
             return max(x for x, _ in vertices), max(y for _, y in vertices)
+        case Rings():
+            return thing.reach, thing.reach

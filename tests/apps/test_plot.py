@@ -6,6 +6,8 @@ import builtins
 import math
 import sys
 from collections.abc import Callable
+from copy import deepcopy
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +16,7 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 
+from behaviours.interface import Odometry, Pose, Reading, Scan
 from rplan.apps.drawing import plot
 from sim.recording import Recording
 
@@ -86,7 +89,7 @@ def texts(recording: Recording, verdict: str = "") -> set[str]:
     """All words that are drawn."""
     import matplotlib.text
 
-    figure = plot._figure(recording, plot._track(recording), verdict)
+    figure = plot._figure(recording, plot.track_of(recording), verdict)
     return {text.get_text() for text in figure.findobj(matplotlib.text.Text) if text.get_text()}
 
 
@@ -103,7 +106,7 @@ def test_a_hand_written_brain_in_a_bare_world_is_drawn_too(tmp_path: Path) -> No
 
 
 def test_the_colours_go_by_where_the_plan_names_a_competence() -> None:
-    lasted = plot._lasted(plot._bands(["(a)", "(b)", "(b)", None, "(run-away)", "(a)", "(a)"]))
+    lasted = plot._lasted(plot.bands_of(["(a)", "(b)", "(b)", None, "(run-away)", "(a)", "(a)"]))
     assert list(lasted.items()) == [("(a)", 3), ("(b)", 2), (None, 1), ("(run-away)", 1)]
     first, second, *_ = plot.PALETTE
     expected = {"(b)": first, "(a)": second, None: plot.OPEN, "(run-away)": plot.DANGER}
@@ -111,7 +114,7 @@ def test_the_colours_go_by_where_the_plan_names_a_competence() -> None:
 
 
 def test_odometry_is_laid_on_the_first_true_pose() -> None:
-    track = plot._Track(pose=[(1.0, 2.0, math.pi / 2)], odometry=[(0.0, 0.0, 0.0), (3.0, 0.0, 0.0)])
+    track = plot.Track(pose=[(1.0, 2.0, math.pi / 2)], odometry=[(0.0, 0.0, 0.0), (3.0, 0.0, 0.0)])
     np.testing.assert_allclose(plot._believed(track), [(1.0, 2.0), (1.0, 5.0)], atol=1e-12)
 
 
@@ -141,3 +144,63 @@ def test_without_matplotlib_it_says_how_to_get_it(
 def test_a_place_that_cannot_be_written_is_an_os_error(run: Recording, tmp_path: Path) -> None:
     with pytest.raises(OSError):
         plot.draw(run, tmp_path / "nowhere" / "run.png")
+
+
+# --- robots and worlds of other kinds ----------------------------------------------------------------
+
+SQUARE = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+MAP: dict[str, Any] = {
+    "bounds": [-5, -5, 10, 5],
+    "robot": {"radius": 0.6, "shape": {"polygon": [[-0.5, -0.3], [0.6, 0.0], [-0.5, 0.3]]}, "height": 0.5},
+    "donor": None,
+    "goal": {"at": [6, 3], "within": 1},
+    "slopes": [{"region": [2, -4, 4, -2], "rise": 0.1, "uphill": 1.57}],
+    "things": [
+        {
+            "id": "map",
+            "kind": "outline",
+            "shape": {"rings": [[[2 * x, 2 * y] for x, y in SQUARE], [[x, y] for x, y in SQUARE[::-1]]]},
+            "pose": [0, 2, 0],
+            "height": 1,
+        },
+        {"id": "kerb", "kind": "curb", "shape": {"polygon": SQUARE}, "pose": [5, -3, 0.3], "height": 0.1},
+    ],
+    "movers": [],
+    "home": [0, 0, 0],
+}
+
+
+def test_a_map_with_holes_a_goal_a_slope_and_a_curb_are_drawn(tmp_path: Path) -> None:
+    ticks = [{"t": n / 10, "world": {"robot": [n / 20, 0.0, 0.3], "stage": "to the goal"}} for n in range(100)]
+    world = deepcopy(MAP)
+    run = Recording({"world": world, "scenario": {"name": "hall"}}, ticks)
+    plot.draw(run, tmp_path / "run.png")
+    assert colour_share(tmp_path / "run.png", plot.CURB) > 0.01
+    assert colour_share(tmp_path / "run.png", plot.SLOPE) > 0.005
+    solid = colour_share(tmp_path / "run.png", plot.THING)
+    world["things"][0]["shape"]["rings"].pop()
+    plot.draw(run, tmp_path / "filled.png")
+    assert colour_share(tmp_path / "filled.png", plot.THING) > solid + 0.01, "a hole is open"
+    assert {"goal", "6° up →", "start, home", "to the goal"} <= texts(run)
+
+
+def test_the_hull_is_drawn_as_it_turns() -> None:
+    from matplotlib.patches import Polygon
+
+    ticks = [{"t": n / 10, "world": {"robot": [n / 20, 0.0, n / 100]}} for n in range(120)]
+    run = Recording({"world": {**MAP, "things": []}}, ticks)
+    figure = plot._figure(run, plot.track_of(run), "")
+    hulls = [patch.get_xy()[1] for patch in figure.findobj(Polygon) if len(patch.get_xy()) == 4]
+    assert len(hulls) == 3
+    np.testing.assert_allclose(hulls[1], [2.5 + 0.6 * math.cos(0.5), 0.6 * math.sin(0.5)], atol=1e-9)
+
+
+def test_what_the_lidar_saw_is_drawn_where_it_was(tmp_path: Path) -> None:
+    scan = Scan(0.5, True, Pose(0.2, 0.0, 0.1), np.array([-0.1, 1.0, 2.0]), np.array([2.0, 10.0, math.nan]), 0.1, 10.0)
+    np.testing.assert_allclose(plot.seen(scan, (1.0, 1.0, math.pi / 2)), [[1.0, 3.2]], atol=1e-12)
+    ticks = [{"t": n / 10, "world": {"robot": [n / 20, 0.0, 0.0]}} for n in range(30)]
+    many = replace(scan, bearings=np.linspace(-3, 3, 2000), ranges=np.full(2000, 2.5), stamp=1.6)
+    readings = [Reading(s.stamp, 5, Odometry(Pose(0.0, 0.0), 0.0, 0.0), lidar=s) for s in (scan, many)]
+    plot.draw(Recording({"world": MAP}, ticks, readings=readings), tmp_path / "seen.png")
+    plot.draw(Recording({"world": MAP}, ticks), tmp_path / "bare.png")
+    assert (imread(tmp_path / "seen.png") != imread(tmp_path / "bare.png")).any(axis=2).sum() > 50

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
+from behaviours.interface import Odometry, Pose, Ranges, Reading
 from rplan.apps.cli import cli
+from sim.recording import Recorder, read
 
 PLAN = """(use robot)
 (declare (lost) bool "")
@@ -152,3 +157,86 @@ def test_a_plan_that_reads_its_own_failures_takes_them_as_percepts(tmp_path: Pat
     )
     result = tick(str(path), {"(competence-failed stop)": True}, {"(competence-failed stop)": False})
     assert [json.loads(line)["outputs"]["action"] for line in result.stdout.splitlines()] == [None, "(stop)"]
+
+
+# --- over readings that were recorded ---------------------------------------------------------------
+
+MAKE_ROOM = Path(__file__).parents[2] / "plans" / "make_room" / "make_room.rplan"
+RINGS = np.linspace(-math.pi, math.pi, 24, endpoint=False), np.linspace(-math.pi, math.pi, 6, endpoint=False)
+
+
+def sensed(n: int, nearest: float) -> Reading:
+    """The robot stands; the nearest echo of its sonars is straight ahead."""
+    waist, skirt = (
+        Ranges(n / 10, True, bearings, np.where(bearings == 0, nearest, 5.0), 7.62, 0.35) for bearings in RINGS
+    )
+    return Reading(n / 10, n, Odometry(Pose(0.0, 0.0), 0.0, 0.0, n / 10), sonar=waist, skirt=skirt)
+
+
+def recorded(path: Path, *nearest: float) -> str:
+    with Recorder(path, {"plan": None}) as recorder:
+        for n, distance in enumerate(nearest):
+            recorder.tick(n / 10, {}, "null", sensed(n, distance))
+    return str(path)
+
+
+def over(plan: str | Path, recording: str, *options: str) -> Result:
+    result = CliRunner().invoke(
+        cli, ["tick", str(plan), "--readings", recording, *options], catch_exceptions=False, input=b""
+    )
+    assert "Traceback" not in result.output
+    return result
+
+
+def test_a_plan_runs_over_readings_that_were_recorded_without_a_world(tmp_path: Path) -> None:
+    recording = recorded(tmp_path / "run.mcap", 5.0, 5.0, 0.1, 0.1, 5.0)
+    result = over(MAKE_ROOM, recording)
+    assert result.exit_code == 0
+    lines = [json.loads(line) for line in result.stdout.splitlines()]
+    assert [[*line] for line in lines] == [["t", "tick", "hole", "outputs", "sent", "way"]] * 5
+    assert [line["t"] for line in lines] == [0.0, 0.1, 0.2, 0.3, 0.4]
+    assert [line["tick"] for line in lines] == [0, 1, 2, 3, 4]
+    fleeing = "(move-away-from-danger)"
+    assert [line["sent"]["action"] for line in lines[:4]] == ["(stop)", "(stop)", fleeing, fleeing]
+
+
+def test_switches_are_only_the_ticks_in_which_something_else_is_sent(tmp_path: Path) -> None:
+    recording = recorded(tmp_path / "run.mcap", 5.0, 5.0, 0.1, 0.1)
+    lines = [json.loads(line) for line in over(MAKE_ROOM, recording, "--switches").stdout.splitlines()]
+    assert [(line["tick"], line["sent"]["action"]) for line in lines] == [(0, "(stop)"), (2, "(move-away-from-danger)")]
+
+
+def test_a_run_in_a_world_decides_the_same_over_its_own_recording(tmp_path: Path) -> None:
+    path = str(tmp_path / "run.mcap")
+    CliRunner().invoke(cli, ["simulate", str(MAKE_ROOM), "--until", "10", "--record", path])
+    ticks: list[Any] = list(read(path).ticks)
+    then = [tick["plan"]["sent"] for tick in ticks if tick["plan"]]
+    again = [json.loads(line)["sent"] for line in over(MAKE_ROOM, path).stdout.splitlines()]
+    assert again[: len(then)] == then
+    assert len({*map(str, then)}) > 1, "something happened"
+
+
+def test_a_recording_without_readings_and_no_recording_are_clear_errors(tmp_path: Path) -> None:
+    with Recorder(tmp_path / "bare.mcap", {"plan": None}) as recorder:
+        recorder.tick(0.0, {}, "null")
+    (tmp_path / "text.mcap").write_text("(plan)")
+    for name, says in (
+        ("bare.mcap", "holds no readings"),
+        ("text.mcap", "is not an MCAP file"),
+        ("none.mcap", "none.mcap: No such file"),
+    ):
+        result = over(MAKE_ROOM, str(tmp_path / name))
+        assert result.exit_code == 2
+        assert says in result.stderr
+
+
+def test_switches_without_readings_are_refused(plan: str) -> None:
+    result = tick(plan, options=("--switches",))
+    assert result.exit_code == 2
+    assert "--switches goes with --readings" in result.stderr
+
+
+def test_a_plan_that_nothing_brings_to_life_cannot_run_over_readings(plan: str, tmp_path: Path) -> None:
+    result = over(plan, recorded(tmp_path / "run.mcap", 5.0))
+    assert result.exit_code == 1
+    assert "error[unbound]" in result.stderr

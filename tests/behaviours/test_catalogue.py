@@ -16,8 +16,17 @@ def built(*names, **values):
     return [library(n).build(values.get(n.replace("-", "_"), {}), workshop) for n in names], workshop
 
 
-def test_the_libraries_of_the_find_and_fetch_plan_are_there():
-    assert NAMES == ["find-and-fetch", "ir-search", "natigation", "robot", "runaway", "stereo-search"]
+def test_the_libraries_are_there():
+    assert NAMES == [
+        "drive",
+        "find-and-fetch",
+        "ir-search",
+        "natigation",
+        "robot",
+        "runaway",
+        "sensors",
+        "stereo-search",
+    ]
     with pytest.raises(TypeError):
         LIBRARIES["mine"] = library("robot")
 

@@ -12,7 +12,7 @@ import numpy as np
 from behaviours.interface import Command, Drive, Pose
 from sim.episode import Episode
 from sim.raycast import Circle, Outline, Rays, Scene, box, cast
-from sim.scenarios.scenario import load
+from sim.scenarios.format import load
 from sim.world import TICK, World
 
 LOT = load(Path(__file__).parents[2] / "plans" / "find_and_fetch" / "parking_lot.yaml")

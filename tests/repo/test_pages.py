@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from rplan.apps.cli import COMMANDS
+from click import Context
+
+from rplan.apps.cli import COMMANDS, cli
 from rplan.apps.wiring import signatures
 from rplan.driver import compile_plan
 from rplan.lang.source import Source
@@ -94,9 +96,8 @@ def test_every_option_of_every_command_is_on_its_page(pages: Pages, root: Path) 
 
 def options_of(name: str) -> list[str]:
     """The long options of a command."""
-    from importlib import import_module
-
-    command = import_module(f"rplan.apps.commands.{name}").command
+    command = cli.get_command(Context(cli), name)
+    assert command is not None
     return [next(o for o in p.opts if o.startswith("--")) for p in command.params if p.param_type_name == "option"]
 
 

@@ -8,7 +8,8 @@ from collections.abc import Callable
 import pytest
 
 from behaviours.interface import STOP, Command, Drive, Reading, Vec2, wrap
-from sim.scenarios.scenario import Scenario, loads
+from sim.scenarios.format import loads
+from sim.scenarios.scenario import Scenario
 
 BARE = """
 name: small world

@@ -11,7 +11,7 @@ import pytest
 from behaviours.interface import STOP, Command, Drive, Head, Reading
 from sim.episode import Episode, run
 from sim.judge import Judge
-from sim.scenarios.scenario import load
+from sim.scenarios.format import load
 from sim.world import World
 
 LOT = load(Path(__file__).parents[2] / "plans" / "find_and_fetch" / "parking_lot.yaml")
@@ -163,7 +163,7 @@ def test_header_and_snapshots_are_json_and_small():
     episode = Episode(LOT, 1)
     episode.run(Wandering(), 15, keeping)
     header = json.loads(json.dumps(episode.header(), allow_nan=False))
-    assert header["robot"] == {"radius": 0.35}
+    assert header["robot"] == {"radius": 0.35, "shape": {"circle": 0.35}, "height": 1.2}
     assert header["donor"]["pose"] == [7.62, 0.0, 0.0]
     assert [mover["id"] for mover in header["movers"]][:4] == ["donor", "driving-car", "walker", "rolled-trashcan"]
     assert {"wall-1", "parked-car-7"} & {thing["id"] for thing in header["things"]}

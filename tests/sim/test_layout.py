@@ -10,8 +10,8 @@ import pytest
 from sim.frames import distance_to_segment
 from sim.noise import chance
 from sim.raycast import Circle
+from sim.scenarios.format import load
 from sim.scenarios.layout import Layout, distance, lay_out
-from sim.scenarios.scenario import load
 from sim.scenarios.schema import ScenarioError
 
 LOT = load(Path(__file__).parents[2] / "plans" / "find_and_fetch" / "parking_lot.yaml")

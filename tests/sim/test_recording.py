@@ -111,25 +111,26 @@ def test_a_run_that_raises_leaves_a_whole_file(tmp_path: Path) -> None:
     assert len(list(recording.ticks)) == 1
 
 
-def test_a_process_that_is_killed_leaves_the_closed_chunks(tmp_path: Path) -> None:
+@pytest.mark.parametrize("number", [3, 190, 195, 200])
+def test_a_process_that_is_killed_leaves_all_but_a_fifth_of_a_second(tmp_path: Path, number: int) -> None:
     path = tmp_path / "run.mcap"
     script = (
         "import runpy, sys, os, signal\n"
         "names = runpy.run_path(sys.argv[1])\n"
         "recorder = names['Recorder'](sys.argv[2], names['HEADER'])\n"
-        "for tick in range(200): recorder.tick(tick / 10, names['world'](tick), names['NOTE'])\n"
+        "for tick in range(int(sys.argv[3])): recorder.tick(tick / 10, names['world'](tick), names['NOTE'])\n"
         "os.kill(os.getpid(), signal.SIGKILL)\n"
     )
-    subprocess.run([sys.executable, "-c", script, __file__, str(path)], check=False)
+    subprocess.run([sys.executable, "-c", script, __file__, str(path), str(number)], check=False)
     recording = read(path)
     assert recording.cut_short
     assert recording.header == HEADER
     ticks = list(recording.ticks)
-    assert 150 < len(ticks) < 200
+    assert number - 2 <= len(ticks) <= number
     assert [tick["tick"] for tick in ticks] == list(range(len(ticks)))
 
 
-@pytest.mark.parametrize("kept", [0.9, 0.5, 0.2])
+@pytest.mark.parametrize("kept", [0.7, 0.5, 0.2])
 def test_a_file_that_was_cut_short_gives_its_beginning(tmp_path: Path, kept: float) -> None:
     path = record(tmp_path / "run.mcap", 300)
     recording = read(cut(path, int(path.stat().st_size * kept)))

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from behaviours.interface import Odometry, Pose, Ranges, Reading, Scan
 from sim.recording import Recorder, Recording, read
 from sim.replay import pack, write_replay
 
@@ -228,3 +229,53 @@ def test_the_page_has_its_parts(run: Recording, tmp_path: Path, words: str) -> N
 def test_a_page_that_cannot_be_written_is_an_os_error(run: Recording, tmp_path: Path) -> None:
     with pytest.raises(IsADirectoryError):
         write_replay(run, tmp_path)
+
+
+# --- robots and worlds of other kinds ----------------------------------------------------------------
+
+
+def scanned(ticks: int, beams: int = 400) -> Recording:
+    """A robot whose lidar measures in every tick, and whose third tick lacks its reading."""
+    bearings = np.linspace(-2.0, 2.0, beams)
+    readings = []
+    for n in range(ticks):
+        ranges = np.full(beams, 1.0 + n / 100)
+        ranges[0] = math.nan
+        scan = Scan(n / 10, True, Pose(0.2, 0.0, 0.1), bearings, ranges, 0.1, 10.0)
+        ring = Ranges(n / 10, True, np.array([0.0, 1.0]), np.array([1.0, 2.0]), 7.0, 0.45)
+        if n != 2:
+            readings.append(Reading(n / 10, n, Odometry(Pose(0.0, 0.0), 0.0, 0.0), sonar=ring, lidar=scan))
+    return Recording(HEADER, [tick(n) for n in range(ticks)], readings=readings)
+
+
+def test_scans_arrive_five_times_a_second_with_their_rays() -> None:
+    packed: Any = pack(scanned(20))
+    at, rows = track(packed, "scan")
+    assert at == [0, 3, 5, 7, 9, 11, 13, 15, 17, 19], "the one of tick 2 is missing, so the next one comes"
+    lie = packed["rays"]["scan"]
+    assert lie["mount"] == [0.2, 0.0, 0.1]
+    assert len(lie["bearings"]) == len(rows[0]) == 134, "every third of 400 beams"
+    assert lie["bearings"][0] == -2.0
+    assert rows[1][0] is None, "a beam that failed stays missing"
+    assert rows[1][1:] == [pytest.approx(1.03)] * 133
+
+
+def test_rays_of_sonars_lie_where_the_robot_carries_them() -> None:
+    packed: Any = pack(scanned(3))
+    assert packed["rays"]["sonar"] == {"bearings": [0.0, 1.0], "waist": 2, "mount": 0.45}
+    assert pack(Recording(HEADER, [tick(0)]))["rays"] == {}, "an early recording does not say it"
+
+
+def test_a_world_without_a_donor_arrives_with_its_shapes(tmp_path: Path) -> None:
+    ring = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]
+    world = {
+        "bounds": [0, 0, 1, 1],
+        "robot": {"radius": 0.5, "shape": {"polygon": ring}, "height": 0.4},
+        "donor": None,
+        "goal": {"at": [1, 1], "within": 0.5},
+        "slopes": [{"region": [0, 0, 1, 1], "rise": 0.1, "uphill": 1.5}],
+        "things": [{"id": "map", "kind": "outline", "shape": {"rings": [ring]}, "pose": [0, 0, 0], "height": 1}],
+        "movers": [],
+    }
+    packed = embedded(page_of(Recording({**HEADER, "world": world}, [tick(0)]), tmp_path))
+    assert packed["header"]["world"] == world

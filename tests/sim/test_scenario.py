@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,8 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sim.raycast import Circle
-from sim.scenarios.scenario import Between, load, loads
+from sim.scenarios.format import load, loads
+from sim.scenarios.scenario import Between
 from sim.scenarios.schema import ScenarioError
+from sim.sensors.build import SonarBuild, StereoBuild
 from sim.things.thing import At, RobotLeft, Roll, Travel, Waypoint
 
 LOT = Path(__file__).parents[2] / "plans" / "find_and_fetch" / "parking_lot.yaml"
@@ -94,11 +97,11 @@ things:
         "lot.yaml:2:9: bounds: expected a region [xmin, ymin, xmax, ymax], got a list of 3",
         "lot.yaml:3:1: robt: unknown key; did you mean 'robot'?",
         "lot.yaml:5:14: robot.start[1]: expected a length in metres, got 'zero'",
-        "lot.yaml:6:11: robot.radius: expected a length in metres > 0, got 'big'",
+        "lot.yaml:6:11: robot.radius: expected a length in metres >= 0.001, got 'big'",
         "lot.yaml:7:25: donor.at: this key is here a second time",
         "lot.yaml:9:12: things[0].kind: no such kind as 'wal'; did you mean 'wall'?",
         "lot.yaml:10:5: things[1]: expected a mapping with a key 'kind', one of "
-        "wall, parked-car, car, person, trashcan, post",
+        "wall, curb, parked-car, car, person, trashcan, post, cart, disc, box, polygon, outline",
     ]
 
 
@@ -145,9 +148,9 @@ def test_an_interval_goes_upwards():
         ("# nothing\n", "lot.yaml:1:1: the file is empty; expected a scenario"),
         ("- 1\n- 2\n", "got a list of 2"),
         ("words", "got 'words'"),
-        ("a: [1", "lot.yaml:1:6: not YAML: expected ',' or ']'"),
+        ("a: [1", "lot.yaml:2:1: not YAML: did not find expected ',' or ']'"),
         ("\x00\x01", "lot.yaml:1:1: not a YAML text"),
-        ("[" * 5000, "lot.yaml:1:1: not a YAML text"),
+        ("[" * 5000, "lot.yaml:1:31: lists and mappings lie more than 30 deep in one another"),
         (LEAST + "---\nname: second\n", "not YAML: but found another document"),
     ],
 )
@@ -165,7 +168,9 @@ def test_a_file_of_other_bytes_is_one_clear_problem(tmp_path):
 def test_weather_and_sensors_are_set_by_name():
     text = LEAST.replace("{start: [0, 0]}", "{start: [0, 0], sonar: {dropout: 0.2}, stereo: {period: 5}}")
     scenario = loads(text + "weather: {sun: 20 deg, jitter: 1.5 deg, gusts: 0.1}\n")
-    assert (scenario.robot.sonar.dropout, scenario.robot.sonar.sd, scenario.robot.stereo.period) == (0.2, 0.01, 5.0)
+    builds = {sensor.name: sensor.build for sensor in scenario.robot.sensors}
+    assert builds["sonar"] == SonarBuild(sd=0.01, dropout=0.2)
+    assert builds["stereo"] == replace(StereoBuild(), period=5.0)
     assert scenario.weather.sun == pytest.approx(math.radians(20))
     assert (scenario.weather.gust, scenario.weather.gusts) == (0.0, 0.1)
 

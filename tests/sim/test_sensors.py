@@ -1,34 +1,99 @@
-"""Each sensor tells the truth it promises, as often and as well as it promises."""
+"""Sonar, infra-red, stereo, odometry: each tells the truth it promises, as often and as well as it promises."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
-from behaviours.interface import STOP, Command, Drive, Head, HeadState, IrReading, Pose, Reading
+from behaviours.interface import (
+    STOP,
+    Command,
+    Currents,
+    Drive,
+    FlipperState,
+    Head,
+    HeadState,
+    IrReading,
+    Pose,
+    Ranges,
+    Reading,
+    StereoReading,
+)
+from sim.noise import chance
 from sim.raycast import Circle, Scene, box
+from sim.robots.build import Build
 from sim.robots.head import PanTilt
-from sim.sensors.infrared import InfraredBuild, InfraredReader, Weather
-from sim.sensors.odometry import DeadReckoning, OdometryBuild
-from sim.sensors.sonar import Sonar, SonarBuild
-from sim.sensors.stereo import Stereo, StereoBuild, slant_range
+from sim.sensors.build import InfraredBuild, Installed, OdometryBuild, SonarBuild, StereoBuild
+from sim.sensors.infrared import BeaconReader
+from sim.sensors.odometry import WheelOdometry
+from sim.sensors.sonar import SonarRings
+from sim.sensors.stereo import VergingCameras, slant_range
+from sim.sensors.suite import Suite
+from sim.sensors.truth import Truth
+from sim.sensors.weather import Weather
+from sim.things.ground import Ground
 from sim.world import World
 
 ORIGIN = Pose(0.0, 0.0)
 FOOT = 0.3048
 NOISELESS, CALM = SonarBuild(0.0, 0.0), Weather()
+NOTHING = Scene([], [], [])
 
 
 def rng(seed: int = 0) -> np.random.Generator:
     return np.random.default_rng(seed)
 
 
-def sweep(scene: Scene, pose: Pose = ORIGIN, build: SonarBuild = NOISELESS):
-    return Sonar(build, 0.35, rng()).sense(0, 0.0, pose, scene)
+def at(tick: int = 0, scene: Scene = NOTHING, pose: Pose = ORIGIN, **more: Any) -> Truth:
+    """What is so at this tick of 0.1 s; the robot and its head stand still unless `more` says otherwise."""
+    time = tick / 10
+    standing = Truth(
+        tick=tick,
+        time=time,
+        dt=0.1,
+        pose=pose,
+        speed=0.0,
+        turn_rate=0.0,
+        acceleration=(0.0, 0.0),
+        wheels=Drive(0.0, 0.0),
+        aside=0.0,
+        still_for=time,
+        head=HeadState(0.0, 0.0, True),
+        head_still_for=time,
+        load=Currents(0.0, True, 0.0, 0.0),
+        flippers=FlipperState(0.0, False),
+        touched=(),
+        beacon=None,
+        donor=-1,
+        weather=CALM,
+        ground=Ground(),
+        scene=lambda: scene,
+    )
+    return replace(standing, **more)
+
+
+def moved(before: Truth, pose: Pose, wheels: Drive | None = None) -> Truth:
+    """A tick later at this pose; wheels: where they did something else than the hull."""
+    turn = pose.theta - before.pose.theta
+    middle = before.pose.theta + turn / 2
+    way = (pose.x - before.pose.x) * math.cos(middle) + (pose.y - before.pose.y) * math.sin(middle)
+    wheels = wheels or Drive(way / before.dt, turn / before.dt)
+    return replace(before, tick=before.tick + 1, time=(before.tick + 1) * before.dt, pose=pose, wheels=wheels)
+
+
+def sweep(scene: Scene, pose: Pose = ORIGIN, build: SonarBuild = NOISELESS, height: float = 1.2):
+    return SonarRings(build, 0.35, height, rng()).measure(at(0, scene, pose))
+
+
+def drive(world: World, command: Command, ticks: int) -> Iterator[Reading]:
+    for _ in range(ticks):
+        yield world.sense()
+        world.step(command)
 
 
 # --- sonar ----------------------------------------------------------------------------------------
@@ -42,7 +107,7 @@ def test_ranges_are_measured_from_the_hull():
 
 
 def test_the_rings_have_24_and_6_bearings_within_half_a_turn():
-    waist, skirt = sweep(Scene([], [], []))
+    waist, skirt = sweep(NOTHING)
     assert np.degrees(waist.bearings)[[0, 1, 12, 13, 23]] == pytest.approx([0, 15, 180, -165, -15])
     assert np.degrees(skirt.bearings) == pytest.approx([0, 60, 120, 180, -120, -60])
     assert (waist.ranges == 5.0).all() and (skirt.ranges == 5.0).all()
@@ -67,14 +132,20 @@ def test_a_low_thing_is_heard_by_the_skirt_alone():
     assert skirt.ranges[0] == pytest.approx(1.35)
 
 
+def test_a_low_robot_carries_its_rings_low():
+    waist, skirt = sweep(Scene([Circle(0.3)], [Pose(2, 0)], [0.15]), height=0.24)
+    assert waist.ranges[0] == skirt.ranges[0] == pytest.approx(1.35)
+
+
 def test_what_touches_the_hull_reads_five_centimetres():
     waist, _ = sweep(Scene([Circle(0.3)], [Pose(0.645, 0)], [1.0]))
     assert waist.ranges[0] == 0.05
 
 
 def test_noise_is_one_per_cent_of_the_range_and_dropouts_read_the_maximum():
-    scene, sonar = Scene([box(1, 9)], [Pose(3.85, 0)], [1.0]), Sonar(SonarBuild(0.01, 0.1), 0.35, rng())
-    readings = np.array([sonar.sense(3 * n, 0.3 * n, ORIGIN, scene)[0].ranges[0] for n in range(1500)])
+    wall = at(0, Scene([box(1, 9)], [Pose(3.85, 0)], [1.0]))
+    sonar = SonarRings(SonarBuild(0.01, 0.1), 0.35, 1.2, rng())
+    readings = np.array([sonar.measure(wall)[0].ranges[0] for _ in range(1500)])
     heard = readings[readings < 5.0]
     assert 1 - len(heard) / len(readings) == pytest.approx(0.1, abs=0.025)
     assert heard.mean() == pytest.approx(3.0, abs=0.005)
@@ -89,12 +160,6 @@ def test_a_sweep_is_fresh_every_third_tick_and_latched_in_between(small):
     assert [sonar.stamp for sonar in sonars] == pytest.approx([0, 0, 0, 0.3, 0.3, 0.3, 0.6, 0.6, 0.6])
     assert sonars[1].ranges is sonars[0].ranges
     assert sonars[3].ranges[0] < sonars[0].ranges[0]
-
-
-def drive(world: World, command: Command, ticks: int) -> Iterator[Reading]:
-    for _ in range(ticks):
-        yield world.sense()
-        world.step(command)
 
 
 # --- head -----------------------------------------------------------------------------------------
@@ -129,12 +194,9 @@ def scan(metres: float, seed: int, weather: Weather = CALM, behind: bool = False
     beacon = metres * math.cos(angle), metres * math.sin(angle)
     poses = [Pose(*beacon)] + [Pose((metres + 1) * math.cos(angle), (metres + 1) * math.sin(angle))] * behind
     scene = Scene([Circle(0.25)] * len(poses), poses, [0.9, 1.75][: len(poses)])
-    reader = InfraredReader(InfraredBuild(), weather, rng(seed))
+    reader, here = BeaconReader(InfraredBuild(), rng(seed)), at(10, scene, beacon=beacon, donor=0, weather=weather)
     pans = np.radians(np.arange(-90, 91, 2))
-    return [
-        reader.sense(n + 1.0, HeadState(float(pan), 0.0, True), 1.0, ORIGIN, beacon, 0, scene)
-        for n, pan in enumerate(pans)
-    ]
+    return [reader.measure(replace(here, head=HeadState(float(pan), 0.0, True)))[0] for pan in pans]
 
 
 def bearing_found(readings: list[IrReading]) -> float | None:
@@ -162,6 +224,32 @@ def test_the_sun_behind_the_donor_drowns_the_beacon_unless_somebody_stands_betwe
     assert all(bearing_found(scan(6.0, seed, sunny)) is None for seed in range(10))
     assert all(bearing_found(scan(6.0, seed, sunny, behind=True)) is not None for seed in range(10))
     assert all(bearing_found(scan(6.0, seed, Weather(sun=math.pi))) is not None for seed in range(10))
+
+
+def test_the_sun_that_comes_out_in_mid_run_drowns_the_beacon():
+    beacon, scene = (5.0, 0.0), Scene([Circle(0.25)], [Pose(5.0, 0.0)], [0.9])
+    reader = BeaconReader(InfraredBuild(), rng())
+    assert reader.measure(at(10, scene, beacon=beacon, donor=0))[0].detected
+    assert not reader.measure(at(20, scene, beacon=beacon, donor=0, weather=Weather(sun=0.0)))[0].detected
+
+
+def test_a_tall_donor_does_not_shade_its_own_beacon():
+    tall = Scene([Circle(0.25)], [Pose(5.0, 0.0)], [1.8])
+    reader = BeaconReader(InfraredBuild(), rng())
+    assert not reader.measure(at(10, tall, beacon=(5.0, 0.0), donor=0, weather=Weather(sun=0.0)))[0].detected
+
+
+@pytest.mark.parametrize(("degrees", "heard"), [(0, True), (28, True), (-28, True), (33, False), (-33, False)])
+def test_the_reader_hears_within_thirty_degrees_of_its_axis(degrees, heard):
+    near = at(10, Scene([Circle(0.25)], [Pose(3.0, 0.0)], [0.9]), beacon=(3.0, 0.0), donor=0)
+    aside = replace(near, head=HeadState(math.radians(degrees), 0.0, True))
+    assert BeaconReader(InfraredBuild(), rng()).measure(aside)[0].detected == heard
+
+
+def test_without_a_donor_nothing_is_heard():
+    (reading,) = BeaconReader(InfraredBuild(), rng()).measure(at(10))
+    assert (reading.detected, reading.fresh, reading.stamp) == (False, True, 1.0)
+    assert math.isnan(reading.offset) and 0 <= reading.strength < 1
 
 
 def test_wind_rocks_the_bearing():
@@ -217,7 +305,7 @@ def gaze(tilt: float, pan: float = 0.0) -> HeadState:
 
 def test_the_ray_meets_the_ground_where_camera_height_and_tilt_say():
     tilt = math.atan(1.2 / 3.0)
-    assert slant_range(1.2, gaze(tilt), ORIGIN, Scene([], [], [])) == pytest.approx(math.hypot(1.2, 3.0))
+    assert slant_range(1.2, gaze(tilt), ORIGIN, NOTHING) == pytest.approx(math.hypot(1.2, 3.0))
 
 
 def test_the_ray_meets_the_side_of_a_thing_before_the_ground():
@@ -235,14 +323,14 @@ def test_the_ray_passes_over_what_is_low_and_may_land_on_its_top():
 
 
 def test_a_level_gaze_into_the_open_does_not_verge_and_at_a_thing_it_does():
-    assert math.isnan(slant_range(1.2, gaze(0.0), ORIGIN, Scene([], [], [])))
+    assert math.isnan(slant_range(1.2, gaze(0.0), ORIGIN, NOTHING))
     assert slant_range(1.2, gaze(0.0), ORIGIN, Scene([Circle(0.5)], [Pose(4, 0)], [1.5])) == pytest.approx(3.5)
     assert math.isnan(slant_range(1.2, gaze(0.0), ORIGIN, Scene([Circle(0.5)], [Pose(4, 0)], [1.0])))
 
 
 def test_the_noise_grows_with_the_range():
-    stereo, level = Stereo(StereoBuild(period=1.0), rng()), Scene([box(1, 9)], [Pose(6.5, 0)], [2.0])
-    ranges = [stereo.sense(float(n), gaze(0.0), 1.0, ORIGIN, level).range for n in range(1, 800)]
+    stereo, level = VergingCameras(StereoBuild(), rng()), at(0, Scene([box(1, 9)], [Pose(6.5, 0)], [2.0]))
+    ranges = [stereo.measure(level)[0].range for _ in range(800)]
     assert np.mean(ranges) == pytest.approx(6.0, abs=0.01)
     assert np.std(ranges) == pytest.approx(0.003 * 6 + 0.001 * 36, rel=0.1)
 
@@ -261,6 +349,16 @@ def test_a_fixation_takes_nine_seconds_of_standing_still(small):
 # --- odometry -------------------------------------------------------------------------------------
 
 
+def reckoned(build: OdometryBuild, seed: int, poses: list[Pose], start: Pose = ORIGIN, slip: float = 1.0) -> Pose:
+    """What odometry says after these poses, a tick apart; the tracks turn `slip` times as much as the hull."""
+    odometry, truth = WheelOdometry(build, start, rng(seed)), at(0, pose=start)
+    for pose in poses:
+        truth = moved(truth, pose)
+        truth.wheels = Drive(truth.wheels.speed, slip * truth.wheels.turn_rate)
+        odometry.update(truth)
+    return odometry.measure(truth)[0].pose
+
+
 def test_without_errors_dead_reckoning_is_the_true_pose_seen_from_the_start(small):
     world = World(small(heading="1.0"), 0)
     for command in (Command(Drive(0.2, 0.3)), Command(Drive(-0.1, -0.8)), Command(Drive(0.2, 0.0))):
@@ -276,40 +374,82 @@ def test_odometry_tells_speed_and_turn_rate(small):
     list(drive(world, Command(Drive(0.2, 0.4)), 20))
     odometry = world.sense().odometry
     assert (odometry.speed, odometry.turn_rate) == pytest.approx((0.2, 0.4), abs=1e-3)
+    assert (odometry.stamp, odometry.fresh) == (2.0, True)
 
 
 def test_the_scale_error_is_one_for_the_whole_run_and_the_heading_drifts_only_in_turns():
-    def straight(seed: int) -> Pose:
-        reckoning = DeadReckoning(OdometryBuild(), ORIGIN, rng(seed))
-        for n in range(1, 101):
-            reckoning.update(Pose(0.02 * n, 0.0), 0.1)
-        return reckoning.reading.pose
-
-    ends = [straight(seed) for seed in range(300)]
+    straight = [Pose(0.02 * n, 0.0) for n in range(1, 101)]
+    ends = [reckoned(OdometryBuild(), seed, straight) for seed in range(200)]
     assert all(end.theta == 0 and end.y == 0 for end in ends)
     assert np.std([end.x / 2.0 for end in ends]) == pytest.approx(0.005, rel=0.15)
 
 
 def test_a_turn_on_the_spot_makes_the_heading_drift():
-    def turned(seed: int) -> float:
-        reckoning = DeadReckoning(OdometryBuild(), ORIGIN, rng(seed))
-        for n in range(1, 101):
-            reckoning.update(Pose(0.0, 0.0, 0.02 * n), 0.1)
-        return reckoning.reading.pose.theta
-
-    assert np.std([turned(seed) - 2.0 for seed in range(300)]) == pytest.approx(0.002 * math.sqrt(10), rel=0.15)
+    turn = [Pose(0.0, 0.0, 0.02 * n) for n in range(1, 101)]
+    ends = [reckoned(OdometryBuild(), seed, turn).theta for seed in range(200)]
+    assert np.std([end - 2.0 for end in ends]) == pytest.approx(0.002 * math.sqrt(10), rel=0.15)
 
 
-# --- chance ---------------------------------------------------------------------------------------
+@pytest.mark.parametrize("slip", [1.0, 1.3, 2.0])
+def test_tracks_that_slip_over_report_the_turn_by_their_slip(slip):
+    turn = [Pose(0.0, 0.0, 0.01 * n) for n in range(1, 101)]
+    assert reckoned(OdometryBuild(0, 0), 0, turn, slip=slip).theta == pytest.approx(slip * 1.0)
 
 
-def test_sensors_do_not_disturb_one_anothers_chance(small):
-    noisy = small("{kind: post, at: [3, 0]}", donor="[5, 0]")
-    calm = replace(noisy, robot=replace(noisy.robot, infrared=InfraredBuild(period=1e9)))
-    for scenario in (noisy, calm):
-        assert scenario.robot.stereo.period == 9.0
-    look = Command(Drive(0.0, 0.0), Head(0.0, 0.4))
-    both = [
-        [r.stereo.range for r in drive(World(s, 5), look, 220) if r.stereo and r.stereo.fresh] for s in (noisy, calm)
-    ]
-    assert both[0] == both[1] and len(both[0]) == 2
+def test_a_shove_from_the_side_is_not_noticed():
+    assert reckoned(OdometryBuild(0, 0), 0, [Pose(0.0, 0.1 * n) for n in range(1, 11)]) == Pose(0.0, 0.0, 0.0)
+
+
+def test_wheels_that_spin_in_place_count_as_way():
+    odometry, truth = WheelOdometry(OdometryBuild(0, 0), ORIGIN, rng()), at(0)
+    for _ in range(10):
+        truth = moved(truth, ORIGIN, Drive(0.2, 0.0))
+        odometry.update(truth)
+    assert odometry.measure(truth)[0].pose.x == pytest.approx(0.2)
+
+
+# --- the same numbers as ever ---------------------------------------------------------------------
+
+
+def test_the_four_sensors_of_the_synchro_drive_draw_the_numbers_that_they_have_always_drawn():
+    """The numbers were written down when each sensor still looked at the world by itself."""
+    scene = Scene([Circle(0.25), box(1, 9), Circle(0.3)], [Pose(5, 0), Pose(2.5, 6), Pose(-2, 1)], [0.9, 1.0, 0.4])
+    installed = (
+        Installed("odometry", OdometryBuild()),
+        Installed("stereo", StereoBuild(), period=1.0),
+        Installed("sonar", SonarBuild()),
+        Installed("infrared", InfraredBuild()),
+    )
+    windy = Weather(jitter=0.01, gust=0.1, gusts=0.5)
+    truth = at(0, scene, head=HeadState(-0.3, 0.2, True), beacon=(5.0, 0.0), donor=0, weather=windy)
+    suite = Suite(installed, (), Build(), ORIGIN, 7)
+    reading = suite.sense(truth, False)
+    for tick in range(1, 31):
+        theta, old = 0.02 * tick, truth.pose
+        pose = Pose(old.x + 0.02 * math.cos(theta - 0.01), old.y + 0.02 * math.sin(theta - 0.01), theta)
+        truth = replace(moved(truth, pose), still_for=tick / 10, head_still_for=tick / 10)
+        suite.update(truth)
+        reading = suite.sense(truth, False)
+    assert_as_ever(reading)
+
+
+def assert_as_ever(reading: Reading) -> None:
+    waist, skirt, ir, stereo = reading.sonar, reading.skirt, reading.ir, reading.stereo
+    assert isinstance(waist, Ranges) and isinstance(skirt, Ranges)
+    assert isinstance(ir, IrReading) and isinstance(stereo, StereoReading)
+    near = [1.614911402998614, 1.638199491573848, 2.2603444247189186, 4.201123128945069, 5.0]
+    assert waist.ranges[:5] == pytest.approx(near, rel=1e-12)
+    assert skirt.ranges == pytest.approx([1.6682858968882324, 5.0, 2.0532273235712295, 5.0, 5.0, 5.0], rel=1e-12)
+    assert (ir.offset, ir.strength) == pytest.approx((-0.4981735538593371, 7.111305504672872), rel=1e-12)
+    assert stereo.range == pytest.approx(6.0334284981457245, rel=1e-12)
+    assert [sensed.stamp for sensed in (waist, skirt, ir, stereo)] == pytest.approx([3.0] * 4)
+    pose, odometry = reading.odometry.pose, reading.odometry
+    there = (0.5657946211841298, 0.17572313696041236, 0.6020518134258431)
+    assert (pose.x, pose.y, pose.theta) == pytest.approx(there, rel=1e-12)
+    assert (odometry.speed, odometry.turn_rate) == pytest.approx((0.20049050736660792, 0.2086331561983717), rel=1e-12)
+
+
+def test_the_sources_keep_their_places():
+    assert [float(source.random()) for source in (chance(3).layout, chance(3).odometry)] == pytest.approx(
+        [float(np.random.default_rng(np.random.SeedSequence(3).spawn(5)[place]).random()) for place in (0, 4)]
+    )

@@ -24,9 +24,9 @@ from rplan.driver import Compiled
 from rplan.lang.diagnostic import PlanError
 from sim.recording import read
 from sim.replay import write_replay
+from sim.scenarios.importers.imported import WorldFileError
 from sim.scenarios.schema import ScenarioError
 
-TICK_SECONDS = 0.1
 NOT_DONE = 1
 
 
@@ -34,7 +34,8 @@ NOT_DONE = 1
 @click.argument("plan")
 @click.option(
     "--scenario",
-    help="A YAML file, the name of one beside the plan, or FOLDER/NAME. Default: the only one beside the plan.",
+    help="A YAML file, the name of one beside the plan, FOLDER/NAME, or a world that `rplan import` takes "
+    "(FILE#3: one of several). Default: the only one beside the plan.",
 )
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Everything by chance follows it.")
 @click.option("--until", type=click.FloatRange(0, 1e6, min_open=True), help="Simulated seconds at most.")
@@ -81,6 +82,8 @@ def _world(path: Path) -> World:
         return load_world(path)
     except ScenarioError as error:
         raise InputError("the scenario is wrong\n" + "\n".join(f"  {p}" for p in error.problems)) from None
+    except WorldFileError as error:
+        raise InputError(str(error)) from None
     except OSError as error:
         unreadable(path, error)
 
@@ -171,21 +174,26 @@ def _time(seconds: float | None) -> str:
 
 
 def phases(run: Run) -> list[tuple[str, float | None]]:
-    """Seconds of each phase of the errand; None for what was not reached."""
-    times = run.verdict.times
+    """Seconds of each phase of the task; None for what was not reached."""
+    times, whole = run.verdict.times, ("in all", run.verdict.duration)
+    match run.verdict.task:
+        case "none":
+            return [whole]
+        case "reach":
+            return [("to the goal", times.arrival), whole]
     marks = [0.0, times.departure, times.arrival, times.loaded, times.home]
     names = ["search, until departure", "to the donor (one way)", "hand-over", "return"]
     spans: list[tuple[str, float | None]] = []
     for name, begin, end in zip(names, marks, marks[1:], strict=False):
         spans.append((name, None if begin is None or end is None else end - begin))
-    return [*spans, ("round trip", run.verdict.round_trip), ("in all", run.verdict.duration)]
+    return [*spans, ("round trip", run.verdict.round_trip), whole]
 
 
 def _show(run: Run, written: list[Path]) -> None:
     console = Console(file=sys.stdout, highlight=False, markup=False)
     verdict = run.verdict
     style, word = ("bold green", "DONE") if verdict.done else ("bold red", "NOT DONE")
-    reason = "the object was fetched and brought home" if verdict.done else verdict.reason
+    reason = _achieved(run) if verdict.done else verdict.reason
     console.print(Text.assemble((word, style), f": {reason}"))
     console.print(f"{run.plan} in {run.scenario}, seed {run.seed}\n")
     console.print(_verdict_table(run))
@@ -195,6 +203,16 @@ def _show(run: Run, written: list[Path]) -> None:
         console.print(Text.assemble(("fault", "red"), f" at {fault}"))
     for path in written:
         console.print(f"wrote {path}")
+
+
+def _achieved(run: Run) -> str:
+    match run.verdict.task:
+        case "fetch":
+            return "the object was fetched and brought home"
+        case "reach":
+            return f"the goal was reached in {_time(run.verdict.duration)}"
+        case "none":
+            return "the time is over; the scenario sets no task"
 
 
 def _verdict_table(run: Run) -> Table:
@@ -220,7 +238,7 @@ def _share_table(run: Run) -> Table:
     for name in ("ticks", "time", "switches to it"):
         table.add_column(name, justify="right")
     for name, share in run.shares.items():
-        table.add_row(name, f"{share.ticks:,}", _time(share.ticks * TICK_SECONDS), f"{share.switches:,}")
+        table.add_row(name, f"{share.ticks:,}", _time(share.ticks * run.period), f"{share.switches:,}")
     return table
 
 

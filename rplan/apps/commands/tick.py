@@ -4,32 +4,51 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, BinaryIO
 
 import click
 
 from rplan.apps import talk
-from rplan.apps.files import InputError, plan_file
-from rplan.apps.wiring import decider
+from rplan.apps.files import InputError, plan_file, unreadable
+from rplan.apps.wiring import PlanBrain, decider
 from rplan.driver import Compiled
+from rplan.lang.diagnostic import PlanError
 from rplan.lang.suggest import close
 from rplan.runtime.encode import PerceptError, PerceptValue, wrong_number
-from rplan.runtime.trace import Trace
+from rplan.runtime.trace import Trace, texts
+from sim.recording import RecordingError
+from sim.recording import readings as recorded
 
 
 @click.command("tick", short_help="Run a plan alone: percepts in, outputs out, one JSON object a line.")
 @click.argument("plan")
 @click.option("--input", "source", type=click.File("rb"), default="-", help="Default: standard input.")
+@click.option("--readings", type=click.Path(path_type=Path), help="A recording, whose readings drive PLAN instead.")
+@click.option("--switches", is_flag=True, help="With --readings: only the ticks in which something else is sent.")
 @click.option("--strict", is_flag=True, help="A name that nothing declares is an error.")
 @click.option("--allow-holes", is_flag=True, help="A hole is a warning.")
 @talk.with_libraries
-def command(plan: str, source: BinaryIO, strict: bool, allow_holes: bool) -> None:
+def command(
+    plan: str, source: BinaryIO, readings: Path | None, switches: bool, strict: bool, allow_holes: bool
+) -> None:
     """Read one JSON object a line, percept → value (numbers in SI), and write what PLAN decides, one a line.
 
     A percept's key is its name, or its canonical text where it has arguments. The first bad line ends it with exit
-    code 2.
+    code 2. With --readings the percepts come from what a robot sensed in a recording, by PLAN's own libraries; nothing
+    is moved by what PLAN decides.
     """
-    compiled = talk.compiled(plan_file(plan), strict=strict, allow_holes=allow_holes)
+    if switches and readings is None:
+        raise InputError("--switches goes with --readings")
+    path = plan_file(plan)
+    compiled = talk.compiled(path, strict=strict, allow_holes=allow_holes)
+    if readings is None:
+        _over_lines(compiled, source)
+    else:
+        _over_readings(compiled, path, readings, switches)
+
+
+def _over_lines(compiled: Compiled, source: BinaryIO) -> None:
     decide = decider(compiled)
     trace = Trace(compiled.ways)
     keys = _Keys(compiled)
@@ -45,6 +64,35 @@ def command(plan: str, source: BinaryIO, strict: bool, allow_holes: bool) -> Non
             raise keys.wrong(line_number, error) from None
         click.echo(trace.line(number, decision))
         number += 1
+
+
+def _over_readings(compiled: Compiled, plan: Path, recording: Path, switches: bool) -> None:
+    """The plan and its competences over what was sensed then."""
+    try:
+        brain = PlanBrain(compiled, talk.libraries())
+    except PlanError as error:
+        talk.wrong(error, plan)
+    before: tuple[object, ...] | None = None
+    try:
+        for number, reading in enumerate(recorded(recording)):
+            brain.step(reading)
+            assert brain.tick is not None
+            decision = brain.tick.decision
+            now = (decision.hole, *texts(decision.sent).values())
+            if not switches or now != before:
+                click.echo(_stamped(reading.stamp, brain.trace.line(number, decision)))
+            before = now
+    except RecordingError as error:
+        raise InputError(str(error)) from None
+    except OSError as error:
+        unreadable(recording, error)
+    finally:
+        brain.close()
+
+
+def _stamped(stamp: float, line: str) -> str:
+    """The line with the time of the reading [s] in front."""
+    return f'{{"t": {json.dumps(round(stamp, 6))}, {line[1:]}'
 
 
 def _text(raw: bytes, number: int) -> str:

@@ -16,17 +16,22 @@ from itertools import groupby, pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from behaviours.interface import Floats, Scan
 from sim.recording import Json, Recording
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch
+    from matplotlib.path import Path as Path_
     from matplotlib.ticker import Locator
 
 PALETTE = ("#8457d8", "#b0478f", "#8d5a3b", "#16876f", "#3478e5", "#a9720a", "#0f7fa3", "#5c7f1c")
 DANGER, OPEN, DRIVEN, INK, DIM = "#e5484d", "#b4bcc8", "#3478e5", "#19202b", "#566172"
 THING, THING_EDGE, MOVER, DONOR = "#aab4c2", "#6b7788", "#c98a1b", "#0b7a4b"
+CURB, SLOPE, GOAL, SCAN = "#e3d9c3", "#f0ead9", "#cfe0fb", "#2f9fd0"
 FLEEING = re.compile(r"danger|runaway|run-away|escape")
 MARGIN = 3.5
 """So much of the lot [m] is shown around the way and the donor."""
@@ -34,6 +39,10 @@ WIDTH = 9.0
 """Of the picture [in]."""
 FOOTPRINT_S = 5.0
 """A faint outline of the robot is drawn at this distance in time [s] while it moves."""
+
+SCAN_S = 1.0
+"""The echoes of scans at this distance in time [s] are drawn."""
+MOST_ECHOES = 20_000
 
 MOVED = 0.05
 """What went farther than this [m] is drawn as a thing that moves."""
@@ -45,7 +54,7 @@ Pose = tuple[float, float, float]
 
 
 @dataclass(slots=True)
-class _Track:
+class Track:
     """What the picture needs of every tick. act: text of the main output, None where it is open."""
 
     t: list[float] = field(default_factory=list)
@@ -60,7 +69,7 @@ class _Track:
 
 
 @dataclass(frozen=True, slots=True)
-class _Band:
+class Band:
     """Ticks [start, end) with one act."""
 
     start: int
@@ -71,11 +80,13 @@ class _Band:
 # --- what the recording says ------------------------------------------------------------------------
 
 
-def _mapping(value: object) -> Json:
+def mapping(value: object) -> Json:
+    """The value where it is a mapping, otherwise an empty one."""
     return value if isinstance(value, Mapping) else {}
 
 
-def _listed(value: object) -> Sequence[object]:
+def listed(value: object) -> Sequence[object]:
+    """The value where it is a list, otherwise an empty one."""
     return value if isinstance(value, Sequence) and not isinstance(value, str) else ()
 
 
@@ -83,7 +94,8 @@ def _number(value: object) -> float:
     return float(value) if isinstance(value, int | float) else math.nan
 
 
-def _pose(value: object) -> Pose | None:
+def pose_of(value: object) -> Pose | None:
+    """x, y, theta, where the value is a pose."""
     match value:
         case [x, y, theta]:
             return _number(x), _number(y), _number(theta)
@@ -92,44 +104,46 @@ def _pose(value: object) -> Pose | None:
 
 
 def _main_output(header: Json) -> str:
-    names = [str(name) for name in _listed(_mapping(header.get("plan")).get("outputs"))]
+    names = [str(name) for name in listed(mapping(header.get("plan")).get("outputs"))]
     return "action" if "action" in names or not names else names[-1]
 
 
-def _add(track: _Track, tick: Json, output: str) -> None:
-    world, plan = _mapping(tick.get("world")), _mapping(tick.get("plan"))
-    pose = _pose(world.get("robot")) or (track.pose[-1] if track.pose else (math.nan, math.nan, 0.0))
-    act = _mapping(plan.get("outputs")).get(output) if plan else (track.act[-1] if track.act else None)
+def _add(track: Track, tick: Json, output: str) -> None:
+    world, plan = mapping(tick.get("world")), mapping(tick.get("plan"))
+    pose = pose_of(world.get("robot")) or (track.pose[-1] if track.pose else (math.nan, math.nan, 0.0))
+    act = mapping(plan.get("outputs")).get(output) if plan else (track.act[-1] if track.act else None)
     track.t.append(_number(tick.get("t")))
     track.pose.append(pose)
-    track.odometry.append(_pose(world.get("odometry")) or (math.nan, math.nan, 0.0))
+    track.odometry.append(pose_of(world.get("odometry")) or (math.nan, math.nan, 0.0))
     track.act.append(None if act is None else str(act))
     track.stage.append(str(world.get("stage") or ""))
     track.on_board.append(bool(world.get("on_board")))
     track.contact.append(bool(world.get("contacts")))
     track.hole.append(bool(plan.get("hole")))
-    for name, value in _mapping(world.get("movers")).items():
-        if found := _pose(value):
+    for name, value in mapping(world.get("movers")).items():
+        if found := pose_of(value):
             track.movers.setdefault(str(name), []).append(found)
 
 
-def _track(recording: Recording) -> _Track:
-    track, output = _Track(), _main_output(recording.header)
+def track_of(recording: Recording) -> Track:
+    """What the picture needs of the whole run."""
+    track, output = Track(), _main_output(recording.header)
     for tick in recording.ticks:
         _add(track, tick, output)
     return track
 
 
-def _bands(acts: Sequence[str | None]) -> list[_Band]:
-    bands, start = list[_Band](), 0
+def bands_of(acts: Sequence[str | None]) -> list[Band]:
+    """Stretches of the same act."""
+    bands, start = list[Band](), 0
     for act, group in groupby(acts):
         end = start + sum(1 for _ in group)
-        bands.append(_Band(start, end, act))
+        bands.append(Band(start, end, act))
         start = end
     return bands
 
 
-def _lasted(bands: Sequence[_Band]) -> dict[str | None, int]:
+def _lasted(bands: Sequence[Band]) -> dict[str | None, int]:
     """Competence -> ticks, the longest first."""
     lasts: dict[str | None, int] = {}
     for band in bands:
@@ -146,25 +160,37 @@ def _colours(lasted: Mapping[str | None, int], text: str) -> dict[str | None, st
     return {act: left_open if act is None else given.get(act, DANGER) for act in lasted}
 
 
+def world_of(header: Json) -> Json:
+    """What the header says of the world."""
+    return mapping(header.get("world")) or header
+
+
+def colours_of(header: Json, bands: Sequence[Band]) -> dict[str | None, str]:
+    """Competence -> colour."""
+    return _colours(_lasted(bands), str(mapping(header.get("plan")).get("text") or ""))
+
+
 def _rises(flags: Sequence[bool]) -> list[int]:
     """Where a flag comes up, the first tick included."""
     return [k for k, flag in enumerate(flags) if flag and not (k and flags[k - 1])]
 
 
-def _hand_overs(track: _Track) -> list[int]:
+def _hand_overs(track: Track) -> list[int]:
     return [k + 1 for k, (before, now) in enumerate(pairwise(track.on_board)) if now and not before]
 
 
-def _period(track: _Track) -> float:
+def _period(track: Track) -> float:
     """The mean distance of two ticks [s]."""
     return (track.t[-1] - track.t[0]) / max(1, len(track.t) - 1)
 
 
-def _name(act: str | None) -> str:
+def name_of(act: str | None) -> str:
+    """An act in words."""
     return "left open" if act is None else re.sub(r"^\(([^() ]+)\)$", r"\1", act)
 
 
-def _clock(seconds: float) -> str:
+def clock(seconds: float) -> str:
+    """Minutes and seconds."""
     return f"{int(seconds // 60)}:{seconds % 60:04.1f}"
 
 
@@ -174,42 +200,90 @@ def _clock(seconds: float) -> str:
 def _placed(points: Sequence[object], pose: Pose) -> list[Point]:
     cos, sin, placed = math.cos(pose[2]), math.sin(pose[2]), list[Point]()
     for point in points:
-        x, y = map(_number, _listed(point)[:2])
+        x, y = map(_number, listed(point)[:2])
         placed.append((pose[0] + cos * x - sin * y, pose[1] + sin * x + cos * y))
     return placed
 
 
-def _outline(shape: Json, pose: Pose, face: str, edge: str, alpha: float = 1.0) -> Patch:
-    from matplotlib.patches import Circle, Polygon
+def outline(shape: Json, pose: Pose, face: str, edge: str, alpha: float = 1.0) -> Patch:
+    """A shape (circle, polygon, or rings with holes) where it stands."""
+    from matplotlib.patches import Circle, PathPatch, Polygon
 
     style = {"facecolor": face, "edgecolor": edge, "linewidth": 0.9, "alpha": alpha}
+    if "rings" in shape:
+        return PathPatch(_rings([_placed(listed(ring), pose) for ring in listed(shape["rings"])]), **style)
     if "polygon" in shape:
-        return Polygon(_placed(_listed(shape["polygon"]), pose), closed=True, **style)
+        return Polygon(_placed(listed(shape["polygon"]), pose), closed=True, **style)
     return Circle(pose[:2], _number(shape.get("circle", 0.2)), **style)
 
 
-def _draw_things(axes: Axes, world: Json, track: _Track) -> None:
-    donor_id = _donor_id(world)
-    for thing in map(_mapping, _listed(world.get("things"))):
-        if pose := _pose(thing.get("pose")):
-            _draw_thing(axes, thing, pose, thing.get("id") == donor_id, THING, 1.0)
-    for mover in map(_mapping, _listed(world.get("movers"))):
+def _rings(rings: Sequence[Sequence[Point]]) -> Path_:
+    """One path of closed rings: solid where the outer ones are counter-clockwise and the holes clockwise."""
+    from matplotlib.path import Path as MatplotlibPath
+
+    points, codes = list[Point](), list[int]()
+    for ring in rings:
+        points += [*ring, ring[0]]
+        kinds = [MatplotlibPath.MOVETO, *[MatplotlibPath.LINETO] * (len(ring) - 1), MatplotlibPath.CLOSEPOLY]
+        codes += map(int, kinds)
+    return MatplotlibPath(points, codes)
+
+
+def hull(world: Json) -> Json:
+    """The shape of the robot."""
+    robot = mapping(world.get("robot"))
+    return mapping(robot.get("shape")) or {"circle": _number(robot.get("radius", 0.3))}
+
+
+def _draw_ground(axes: Axes, world: Json) -> None:
+    """Slopes, each with an arrow uphill, and the place to be reached."""
+    from matplotlib.patches import Circle, Rectangle
+
+    for slope in map(mapping, listed(world.get("slopes"))):
+        xmin, ymin, xmax, ymax = (_number(value) for value in listed(slope.get("region")))
+        axes.add_patch(Rectangle((xmin, ymin), xmax - xmin, ymax - ymin, color=SLOPE, zorder=0.5, lw=0))
+        rise, uphill = math.degrees(_number(slope.get("rise"))), _number(slope.get("uphill"))
+        middle = (xmin + xmax) / 2, (ymin + ymax) / 2
+        words = axes.annotate(f"{rise:.0f}° up →", middle, ha="center", va="center", rotation=math.degrees(uphill))
+        words.set(color=DIM, fontsize=7.5, zorder=1)
+    goal = mapping(world.get("goal"))
+    if at := [_number(value) for value in listed(goal.get("at"))]:
+        axes.add_patch(Circle((at[0], at[1]), _number(goal.get("within", 1.0)), fc=GOAL, ec=DRIVEN, alpha=0.35, lw=1.2))
+        _label(axes, "goal", at, DRIVEN, (0, 0))
+
+
+def draw_things(axes: Axes, world: Json, track: Track) -> None:
+    """All that stands, and what moves with its way, where it was last."""
+    draw_standing(axes, world)
+    donor_id = donor_id_of(world)
+    for mover in map(mapping, listed(world.get("movers"))):
         way = track.movers.get(str(mover.get("id")), [])
         moved = any(math.dist(pose[:2], way[0][:2]) > MOVED for pose in way)
         is_donor = mover.get("id") == donor_id
         if moved and not is_donor:
             axes.plot([p[0] for p in way], [p[1] for p in way], ":", color=MOVER, lw=1.0, zorder=2)
         if way:
-            _draw_thing(axes, mover, way[-1], is_donor, MOVER if moved else THING, 0.55 if moved else 1.0)
+            draw_thing(axes, mover, way[-1], is_donor, MOVER if moved else THING, 0.55 if moved else 1.0)
 
 
-def _draw_thing(axes: Axes, thing: Json, pose: Pose, is_donor: bool, face: str, alpha: float) -> None:
-    shape = _mapping(thing.get("shape"))
+def draw_standing(axes: Axes, world: Json) -> None:
+    """The ground, the goal and all that stands."""
+    _draw_ground(axes, world)
+    donor_id = donor_id_of(world)
+    for thing in map(mapping, listed(world.get("things"))):
+        if pose := pose_of(thing.get("pose")):
+            draw_thing(axes, thing, pose, thing.get("id") == donor_id, THING, 1.0)
+
+
+def draw_thing(axes: Axes, thing: Json, pose: Pose, is_donor: bool, face: str, alpha: float) -> None:
+    """A thing where it stands."""
+    shape = mapping(thing.get("shape"))
     if is_donor:
-        axes.add_patch(_outline(shape, pose, "white", DONOR)).set(linewidth=2.0, zorder=3)
+        axes.add_patch(outline(shape, pose, "white", DONOR)).set(linewidth=2.0, zorder=3)
         _label(axes, "donor", pose[:2], DONOR)
     else:
-        axes.add_patch(_outline(shape, pose, face, THING_EDGE, alpha)).set_zorder(1.5)
+        curb = thing.get("kind") == "curb"
+        axes.add_patch(outline(shape, pose, CURB if curb else face, THING_EDGE, alpha)).set_zorder(1.4 if curb else 1.5)
 
 
 def _label(axes: Axes, words: str, at: Sequence[float], colour: str, offset: Point = (0, -15)) -> None:
@@ -219,7 +293,7 @@ def _label(axes: Axes, words: str, at: Sequence[float], colour: str, offset: Poi
     text.set(color=colour, fontsize=8.5, zorder=9, path_effects=[withStroke(linewidth=2.5, foreground="white")])
 
 
-def _draw_path(axes: Axes, track: _Track, bands: Sequence[_Band], colours: Mapping[str | None, str]) -> None:
+def _draw_path(axes: Axes, track: Track, bands: Sequence[Band], colours: Mapping[str | None, str]) -> None:
     for band in bands:
         stretch = track.pose[band.start : band.end + 1]
         colour, xs, ys = colours[band.act], [p[0] for p in stretch], [p[1] for p in stretch]
@@ -228,26 +302,45 @@ def _draw_path(axes: Axes, track: _Track, bands: Sequence[_Band], colours: Mappi
     axes.plot([p[0] for p in believed], [p[1] for p in believed], ":", color=INK, lw=1.0, zorder=3.5)
 
 
-def _believed(track: _Track) -> list[Point]:
+def _believed(track: Track) -> list[Point]:
     """The odometry, laid on the true first pose."""
     (x, y, theta), (u, v, phi) = track.pose[0], track.odometry[0]
     moved = [(p[0] - u, p[1] - v) for p in track.odometry]
     return _placed(moved, (x, y, theta - phi))
 
 
-def _draw_footprints(axes: Axes, world: Json, track: _Track) -> None:
-    from matplotlib.patches import Circle
+def _draw_scans(axes: Axes, recording: Recording, track: Track) -> None:
+    """What the lidar saw, from where the robot really was."""
+    known, due, points = {round(t * 1000): k for k, t in enumerate(track.t)}, -math.inf, list[Floats]()
+    for reading in recording.readings:
+        scan, k = reading.lidar, known.get(round(reading.stamp * 1000))
+        if scan is not None and k is not None and scan.fresh and reading.stamp >= due:
+            points.append(seen(scan, track.pose[k]))
+            due = reading.stamp + SCAN_S
+    if points:
+        x, y = np.concatenate(points)[:: max(1, sum(map(len, points)) // MOST_ECHOES)].T
+        axes.plot(x, y, ",", color=SCAN, alpha=0.8, zorder=2.5)
 
-    radius = _number(_mapping(world.get("robot")).get("radius", 0.3))
+
+def seen(scan: Scan, pose: Pose) -> Floats:
+    """Where the beams of a scan ended [m, world], (n, 2), with the robot at this pose."""
+    met = scan.ranges < scan.max_range  # not where the beam failed
+    ranges, turned = scan.ranges[met], scan.bearings[met] + scan.mount.theta + pose[2]
+    ((x, y),) = _placed([(scan.mount.x, scan.mount.y)], pose)
+    return np.stack([x + ranges * np.cos(turned), y + ranges * np.sin(turned)], axis=1)
+
+
+def _draw_footprints(axes: Axes, world: Json, track: Track) -> None:
+    shape = hull(world)
     last_t, last = -math.inf, (math.inf, math.inf)
     for t, pose in zip(track.t, track.pose, strict=True):
         if t - last_t >= FOOTPRINT_S and math.dist(last, pose[:2]) > 0.1:
-            axes.add_patch(Circle(pose[:2], radius, fill=False, edgecolor=DIM, lw=0.7, alpha=0.45, zorder=3))
+            axes.add_patch(outline(shape, pose, "none", DIM, 0.45)).set(linewidth=0.7, zorder=3)
             last_t, last = t, pose[:2]
 
 
-def _draw_moments(axes: Axes, world: Json, track: _Track, bands: Sequence[_Band]) -> None:
-    home = _pose(world.get("home")) or track.pose[0]
+def _draw_moments(axes: Axes, world: Json, track: Track, bands: Sequence[Band]) -> None:
+    home = pose_of(world.get("home")) or track.pose[0]
     axes.plot(*home[:2], marker="s", ms=9, mfc="white", mec=INK, mew=1.6, zorder=6)
     _label(axes, "start, home", home[:2], INK)
     flights = [b.start for b in bands if b.act is not None and FLEEING.search(b.act)]
@@ -256,34 +349,37 @@ def _draw_moments(axes: Axes, world: Json, track: _Track, bands: Sequence[_Band]
     _mark(axes, track, _rises(track.contact), "contact", "v", INK, (38, -13))
 
 
-def _mark(axes: Axes, track: _Track, at: list[int], word: str, marker: str, colour: str, offset: Point) -> None:
+def _mark(axes: Axes, track: Track, at: list[int], word: str, marker: str, colour: str, offset: Point) -> None:
     for n, k in enumerate(at):
         place = track.pose[k][:2]
         axes.plot(*place, marker=marker, ms=9, mfc=colour, mec="white", zorder=8, ls="")
         if len(at) <= FEW:
             above = math.copysign(12.0 * (n % 3), offset[1])  # neighbours do not cover each other
-            _label(axes, f"{word} {_clock(track.t[k])}", place, colour, (offset[0], offset[1] + above))
+            _label(axes, f"{word} {clock(track.t[k])}", place, colour, (offset[0], offset[1] + above))
 
 
-def _bounds(world: Json, track: _Track) -> tuple[float, float, float, float]:
+def bounds_of(world: Json, track: Track) -> tuple[float, float, float, float]:
     """xmin, ymin, xmax, ymax [m] of the picture."""
-    match [_number(value) for value in _listed(world.get("bounds"))]:
+    match [_number(value) for value in listed(world.get("bounds"))]:
         case [xmin, ymin, xmax, ymax]:
             lot = xmin - 0.3, ymin - 0.3, xmax + 0.3, ymax + 0.3
         case _:
             lot = -math.inf, -math.inf, math.inf, math.inf
-    places = [pose[:2] for pose in (*track.pose, *track.movers.get(_donor_id(world), []))]
+    places = [pose[:2] for pose in (*track.pose, *track.movers.get(donor_id_of(world), []))]
+    if goal := [_number(value) for value in listed(mapping(world.get("goal")).get("at"))]:
+        places.append((goal[0], goal[1]))
     xs, ys = [place[0] for place in places], [place[1] for place in places]
     left, right = max(lot[0], min(xs) - MARGIN), min(lot[2], max(xs) + MARGIN)
     return left, max(lot[1], min(ys) - MARGIN), right, min(lot[3], max(ys) + MARGIN)
 
 
-def _donor_id(world: Json) -> str:
+def donor_id_of(world: Json) -> str:
     donor = world.get("donor")
-    return str(_mapping(donor).get("id", donor))
+    return str(mapping(donor).get("id", donor))
 
 
-def _frame(axes: Axes, bounds: tuple[float, float, float, float]) -> None:
+def frame_axes(axes: Axes, bounds: tuple[float, float, float, float]) -> None:
+    """The part of the lot that is shown, with a grid."""
     axes.set(xlim=(bounds[0], bounds[2]), ylim=(bounds[1], bounds[3]), aspect="equal")
     axes.set(xlabel="x [m]", ylabel="y [m]", facecolor="#f8f9fb")
     axes.grid(color="#e4e8ee", lw=0.8)
@@ -293,12 +389,12 @@ def _frame(axes: Axes, bounds: tuple[float, float, float, float]) -> None:
 # --- the strip of time ------------------------------------------------------------------------------
 
 
-def _draw_strip(axes: Axes, track: _Track, bands: Sequence[_Band], colours: Mapping[str | None, str]) -> None:
+def _draw_strip(axes: Axes, track: Track, bands: Sequence[Band], colours: Mapping[str | None, str]) -> None:
     ends = [*track.t[1:], track.t[-1] + 0.1]
     for band in bands:
         start, end = track.t[band.start], ends[band.end - 1]
         axes.broken_barh([(start, end - start)], (0.42, 0.58), facecolors=colours[band.act])
-    for k, band in enumerate(_bands(track.stage)):
+    for k, band in enumerate(bands_of(track.stage)):
         start, end = track.t[band.start], ends[band.end - 1]
         axes.broken_barh([(start, end - start)], (0.0, 0.34), facecolors="#dfe4eb" if k % 2 else "#cfd6df")
         if end - start > 0.1 * (ends[-1] - track.t[0]):
@@ -312,7 +408,7 @@ def _draw_strip(axes: Axes, track: _Track, bands: Sequence[_Band], colours: Mapp
         axes.spines[side].set_visible(False)
 
 
-def _marks(track: _Track) -> Iterator[tuple[list[int], str, str, str]]:
+def _marks(track: Track) -> Iterator[tuple[list[int], str, str, str]]:
     yield _hand_overs(track), "P", DONOR, "on board"
     yield _rises(track.contact), "v", INK, "contact"
     yield _rises(track.hole), "D", "#945b00", "hole"
@@ -325,12 +421,12 @@ def _locator(duration: float) -> Locator:
     return MultipleLocator(next((step for step in steps if duration / step <= 14), 1800))
 
 
-def _draw_legend(figure: Figure, track: _Track, bands: Sequence[_Band], colours: Mapping[str | None, str]) -> None:
+def _draw_legend(figure: Figure, track: Track, bands: Sequence[Band], colours: Mapping[str | None, str]) -> None:
     from matplotlib.lines import Line2D
 
     handles = []
     for act, ticks in _lasted(bands).items():
-        words = f"{_name(act) if any(colours) else 'driven'}  {ticks * _period(track):.1f} s"
+        words = f"{name_of(act) if any(colours) else 'driven'}  {ticks * _period(track):.1f} s"
         handles.append(Line2D([], [], color=colours[act], lw=6, label=words))
     handles.append(Line2D([], [], color=INK, lw=1, ls=":", label="odometry"))
     kinds = [*_marks(track), ([b.start for b in bands if FLEEING.search(b.act or "")], "X", DANGER, "runaway")]
@@ -343,26 +439,27 @@ def _draw_legend(figure: Figure, track: _Track, bands: Sequence[_Band], colours:
 # --- the picture ------------------------------------------------------------------------------------
 
 
-def _title(header: Json, track: _Track, verdict: str) -> tuple[str, str]:
+def _title(header: Json, track: Track, verdict: str) -> tuple[str, str]:
     scenario = header.get("scenario")
-    where = scenario if isinstance(scenario, str) else _mapping(scenario).get("name")
-    names = [_mapping(header.get("plan")).get("name") or "hand-written brain", where, f"seed {header.get('seed', '–')}"]
-    moments = [f"on board at {_clock(track.t[k])}" for k in _hand_overs(track)] + [f"end at {_clock(track.t[-1])}"]
+    where = scenario if isinstance(scenario, str) else mapping(scenario).get("name")
+    names = [mapping(header.get("plan")).get("name") or "hand-written brain", where, f"seed {header.get('seed', '–')}"]
+    moments = [f"on board at {clock(track.t[k])}" for k in _hand_overs(track)] + [f"end at {clock(track.t[-1])}"]
     return " · ".join(str(name) for name in names if name), verdict or ", ".join(moments)
 
 
-def _figure(recording: Recording, track: _Track, verdict: str) -> Figure:
+def _figure(recording: Recording, track: Track, verdict: str) -> Figure:
     from matplotlib.figure import Figure
 
-    world = _mapping(recording.header.get("world")) or recording.header
-    bands = _bands(track.act)
-    colours = _colours(_lasted(bands), str(_mapping(recording.header.get("plan")).get("text") or ""))
-    xmin, ymin, xmax, ymax = _bounds(world, track)
+    world = world_of(recording.header)
+    bands = bands_of(track.act)
+    colours = colours_of(recording.header, bands)
+    xmin, ymin, xmax, ymax = bounds_of(world, track)
     across = WIDTH * 0.89 * (ymax - ymin) / (xmax - xmin)  # [in] height of the lot at full width
     figure = Figure(figsize=(WIDTH, across + 3.4), dpi=130)
     lot, strip = figure.subplots(2, 1, height_ratios=(across, 0.75))
-    _frame(lot, (xmin, ymin, xmax, ymax))
-    _draw_things(lot, world, track)
+    frame_axes(lot, (xmin, ymin, xmax, ymax))
+    draw_things(lot, world, track)
+    _draw_scans(lot, recording, track)
     _draw_footprints(lot, world, track)
     _draw_path(lot, track, bands, colours)
     _draw_moments(lot, world, track, bands)
@@ -387,7 +484,7 @@ def draw(recording: Recording, path_png: Path | str, verdict: str = "") -> None:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
     except ImportError as fault:
         raise ImportError("drawing needs matplotlib: pip install matplotlib", name="matplotlib") from fault
-    track = _track(recording)
+    track = track_of(recording)
     if not track.t:
         raise ValueError("the recording has no ticks: there is nothing to draw")
     figure = _figure(recording, track, verdict)

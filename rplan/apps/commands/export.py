@@ -1,0 +1,72 @@
+"""`rplan export RECORDING`: a table or a film of a run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import click
+
+from rplan.apps.files import InputError, unreadable
+from rplan.apps.table import write_csv, write_parquet
+from sim.recording import Recording, RecordingError, read
+
+FILE = click.Path(dir_okay=False, path_type=Path)
+
+
+@click.command("export", short_help="Make a table or a film of a recording.")
+@click.argument("recording", type=click.Path(path_type=Path))
+@click.option("--csv", type=FILE, help="Write a table, one row a tick.")
+@click.option("--parquet", type=FILE, help="The same table as Parquet; needs duckdb.")
+@click.option("--video", type=FILE, help="Write a film (MP4); needs matplotlib and ffmpeg.")
+@click.option("--fps", default=25, show_default=True, type=click.IntRange(1, 120), help="Frames a second of the film.")
+@click.option("--speed", default=4.0, show_default=True, help="Simulated seconds in a second of the film.")
+def command(
+    recording: Path, csv: Path | None, parquet: Path | None, video: Path | None, fps: int, speed: float
+) -> None:
+    """Write what RECORDING holds into files that other programs read."""
+    if csv is None and parquet is None and video is None:
+        raise InputError("nothing is asked for: give --csv FILE, --parquet FILE or --video FILE")
+    if not (math.isfinite(speed) and 0.01 <= speed <= 1000):
+        raise InputError("--speed must lie between 0.01 and 1000")
+    run = _read(recording)
+    if csv is not None:
+        _write(recording, csv, lambda: f"{write_csv(run, csv):,} rows")
+    if parquet is not None:
+        _write(recording, parquet, lambda: f"{write_parquet(run, parquet):,} rows")
+    if video is not None:
+        _write(recording, video, lambda: f"{_film(run, video, fps, speed):,} frames")
+
+
+def _read(path: Path) -> Recording:
+    try:
+        run = read(path)
+    except RecordingError as error:
+        raise InputError(str(error)) from None
+    except OSError as error:
+        unreadable(path, error)
+    if run.cut_short:
+        click.echo(f"{path} was cut short: what was written by then is exported", err=True)
+    return run
+
+
+def _write(recording: Path, target: Path, write: Callable[[], str]) -> None:
+    if target.resolve() == recording.resolve():
+        raise InputError(f"{target} is the recording itself: write elsewhere")
+    try:
+        amount = write()
+    except (RecordingError, ImportError, ValueError) as error:
+        raise InputError(str(error)) from None
+    except OSError as error:
+        unreadable(target, error)
+    click.echo(f"wrote {target} ({amount})")
+
+
+def _film(run: Recording, target: Path, fps: int, speed: float) -> int:
+    from rplan.apps.drawing.video import VideoError, film
+
+    try:
+        return film(run, target, fps=fps, speed=speed)
+    except VideoError as error:
+        raise InputError(str(error)) from None
