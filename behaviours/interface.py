@@ -86,7 +86,8 @@ class IrReading:
     """One fixation of the infra-red beacon reader, made with the head at `pan` [rad, robot frame].
 
     detected: the beacon's dedicated frequency was heard. offset [rad]: bearing of the beacon relative to the
-    optical axis, left positive (NaN if not detected). strength: signal to noise ratio.
+    optical axis, left positive (NaN if not detected). strength: signal to noise ratio. beacon: whose it was, if it
+    was heard.
     """
 
     stamp: float
@@ -95,6 +96,7 @@ class IrReading:
     detected: bool
     offset: float
     strength: float
+    beacon: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,6 +197,16 @@ class FlipperState:
     fresh: bool = True
 
 
+@dataclass(frozen=True, slots=True)
+class Battery:
+    """level: 0 (empty, the drive stands still) to 1; charging: it fills at a charger."""
+
+    stamp: float
+    fresh: bool
+    level: float
+    charging: bool
+
+
 Sensed = (
     Ranges
     | Odometry
@@ -209,6 +221,7 @@ Sensed = (
     | Currents
     | Bumper
     | FlipperState
+    | Battery
 )
 """What one sensor says; each carries `stamp` [s], when it was measured, and `fresh`: it arrived since the last tick."""
 
@@ -241,6 +254,7 @@ class Reading:
     currents: Currents | None = None
     bumper: Bumper | None = None
     flippers: FlipperState | None = None
+    battery: Battery | None = None
     others: Mapping[str, Sensed] = field(default_factory=lambda: NO_OTHERS)
 
 

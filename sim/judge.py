@@ -15,8 +15,7 @@ from sim.world import Touch, World
 
 Stage = Literal["to the donor", "hand-over", "return", "to the goal", "touched", "no task", "done"]
 Task = Literal["fetch", "reach", "none"]
-HOME, AT_START = 1.0, 0.3  # [m] from the start: what counts as back, and as not yet gone
-STILL = 1.0  # [s] to stand at home
+AT_START = 0.3  # [m] from the start: what counts as not yet gone
 ONE_CONTACT = 1.0  # [s] within which touches of one thing are one contact
 
 PHRASES: dict[Stage, str] = {
@@ -35,7 +34,7 @@ class Times:
     """Moments [s]; None for what has not happened.
 
     departure: the last one within 0.3 m of home before arrival; arrival: standing within the donor's reach for the
-    first time, or at the goal; loaded: the object is on board; home: standing at home with it for a second.
+    first time, or at the goal; loaded: the first object is on board; home: the last one has been brought.
     """
 
     departure: float | None = None
@@ -48,7 +47,8 @@ class Times:
 class Verdict:
     """What is to be said of a run. duration [s]; distance [m] driven; smallest_clearance [m] from the hull, truly.
 
-    reason: in words, why it is not done; empty when it is. A run without a task is done when its time is over.
+    deliveries: moments [s] at which an object had been brought home. reason: in words, why it is not done; empty when
+    it is. A run without a task is done when its time is over.
     """
 
     task: Task
@@ -60,6 +60,7 @@ class Verdict:
     distance: float
     contacts: tuple[Touch, ...]
     smallest_clearance: float
+    deliveries: tuple[float, ...] = ()
 
     @property
     def one_way(self) -> float | None:
@@ -91,7 +92,6 @@ class Judge:
         self._arrival: float | None = None
         self._loaded: float | None = None
         self._home: float | None = None
-        self._home_for = 0.0
         self._distance = 0.0
         self._clearance = world.clearance()
         self._contacts: list[Touch] = []
@@ -114,7 +114,7 @@ class Judge:
         """What the scenario asks for."""
         if self._world.scenario.goal is not None:
             return "reach"
-        return "none" if self._world.donor is None else "fetch"
+        return "fetch" if self._world.donors else "none"
 
     @property
     def stage(self) -> Stage:
@@ -123,9 +123,9 @@ class Judge:
             return "done"
         if self._world.scenario.goal is not None:
             return "touched" if self._failed else "to the goal"
-        if self._world.donor is None:
+        if not self._world.donors:
             return "no task"
-        if self._loaded is not None:
+        if self._world.errand.on_board:
             return "return"
         return "hand-over" if self._in_reach else "to the donor"
 
@@ -153,17 +153,15 @@ class Judge:
             self._arrival = world.time
 
     def _watch_errand(self, world: World) -> None:
-        if world.hand_over is None:
+        if not world.donors:
             return
-        home, standing = world.home_distance, world.robot.standing
-        self._in_reach = standing and world.donor_gap <= world.hand_over.reach
+        errand = world.errand
+        self._in_reach = world.robot.standing and errand.in_reach(world.donor_gaps)
         if self._arrival is None and self._in_reach:
             self._arrival = world.time
-        if self._loaded is None and world.hand_over.on_board:
+        if self._loaded is None and errand.on_board:
             self._loaded = world.time
-        back = self._loaded is not None and standing and home <= HOME
-        self._home_for = self._home_for + world.period if back else 0.0
-        if self._home is None and self._home_for >= STILL - world.period / 2:
+        if self._home is None and errand.done:
             self._home = world.time
 
     def _watch_contacts(self, world: World) -> None:
@@ -188,4 +186,5 @@ class Judge:
             distance=self._distance,
             contacts=tuple(self._contacts),
             smallest_clearance=self._clearance,
+            deliveries=self._world.errand.deliveries,
         )

@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from behaviours.interface import (
+    Battery,
     Bumper,
     Compass,
     Currents,
@@ -56,6 +57,7 @@ SENSORS: Mapping[str, type[Sensed]] = {
     "currents": Currents,
     "bumper": Bumper,
     "flippers": FlipperState,
+    "battery": Battery,
 }
 """Field of a Reading -> the kind of sensor in it."""
 
@@ -83,7 +85,7 @@ def _plain(value: object) -> object:
     match value:
         case float():
             return _number(value)
-        case bool() | int():
+        case bool() | int() | str():
             return value
         case np.bool_():
             return bool(value)
@@ -180,6 +182,7 @@ def _to_pair(value: Any) -> tuple[float, float]:
 FROM_PLAIN: Mapping[str, Callable[[Any], object]] = {
     "float": _to_number,
     "bool": bool,
+    "str": str,
     "Floats": _to_floats,
     "NDArray[np.bool_]": _to_bools,
     "Pose": _to_pose,

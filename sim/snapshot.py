@@ -61,22 +61,23 @@ def snapshot(world: World, stage: str, command: Command) -> Json:
 
 def _in_snapshots(world: World, thing: Thing) -> bool:
     """Whether it may be elsewhere later, or gone."""
-    return thing.placed.moves or thing is world.donor
+    return thing.placed.moves or thing in world.donors
 
 
 def _movers(world: World) -> Json:
     """Where the things are that may be elsewhere, without those that are not there."""
     movers: Json = {}
     for thing in world.things:
-        if thing.present and (thing.placed.moves or thing is world.donor):
+        if thing.present and (thing.placed.moves or thing in world.donors):
             movers[thing.placed.id] = [round(thing.x, 3), round(thing.y, 3), round(wrap(thing.theta), 4)]
     return movers
 
 
 def _donor(world: World) -> Json | None:
-    if world.donor is None or world.hand_over is None:
+    """The first one; all are among the things that move."""
+    if not world.donors:
         return None
-    return _described(world.donor.placed) | {"reach": world.hand_over.reach}
+    return _described(world.donors[0].placed) | {"reach": world.errand.donors[0].reach}
 
 
 def _goal(world: World) -> Json | None:

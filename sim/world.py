@@ -16,21 +16,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import pymunk
 
 from behaviours.interface import Command, Currents, Drive, FlipperState, Pose, Reading, Vec2, wrap
 from sim.frames import bearing
-from sim.noise import chance
+from sim.noise import chance, named_chance
 from sim.raycast import Circle, Polygon, Scene
-from sim.robots.head import PanTilt
+from sim.robots.battery import Cells
+from sim.robots.head import BAD, LIGHT, PanTilt
 from sim.robots.robot import Robot
 from sim.scenarios.layout import lay_out
-from sim.scenarios.scenario import Change, Event, Put, Scenario, Vanish
+from sim.scenarios.scenario import Change, Event, Jam, Put, Scenario, Vanish
+from sim.sensors.build import Installed, StereoBuild
 from sim.sensors.suite import Suite
-from sim.sensors.truth import Truth
-from sim.things.donor import HandOver
+from sim.sensors.truth import Beacon, Truth
+from sim.things.donor import Errand, HandOver
 from sim.things.keyframed import Keyframed
 from sim.things.roller import Roller
 from sim.things.shifter import Shifter
@@ -46,6 +48,8 @@ SLOP = 0.0005  # [m] that touching hulls may overlap
 ITERATIONS = 20
 FAR = 10.0  # [m] beyond which clearance is not looked for
 TOUCH_SPEED = 0.01  # [m/s]
+STEEP = math.radians(30)  # a head that looks down by more may jam
+UNLOAD = 1.0  # [s] of standing at home until an object counts as brought
 MARGIN = 0.02  # [m] that must be left for bodies to glide
 AT_REST = 1e-3  # [m/s, rad/s] below which a pushed thing lies still
 OUTLINE_STEP = 0.02  # [m] between the places of a hull that is not round from which clearance is measured
@@ -82,9 +86,12 @@ class World:
         self.things = tuple(Thing(index, placed, self._space) for index, placed in enumerate(layout.things))
         self.robot = Robot(self._space, layout.start, scenario.robot.build, scenario.ground)
         self.head = PanTilt()
-        self.donor = self.things[0] if scenario.donor is not None else None
-        spec = scenario.donor
-        self.hand_over = HandOver(spec.reach, spec.hand_over) if spec is not None else None
+        self.donors = self.things[: len(scenario.donors)]
+        gives = [HandOver(spec.reach, spec.hand_over, spec.trips) for spec in scenario.donors]
+        self.errand = Errand(gives, UNLOAD if scenario.unload is None else scenario.unload, scenario.unload is not None)
+        self.battery = None if scenario.robot.battery is None else Cells(scenario.robot.battery)
+        self._chargers = tuple(thing for thing in self.things if thing.placed.charges > 0)
+        self._jams = _Jams(scenario.robot.sensors, seed)
         self._things = _Moving(self.things)
         self._events = sorted(scenario.events, key=lambda event: event.time)
         self._scene = _scene(self.things)
@@ -106,8 +113,8 @@ class World:
     def sense(self) -> Reading:
         """What the robot senses now."""
         if self._reading is None:
-            on_board = self.hand_over is not None and self.hand_over.on_board
-            self._reading = self._suite.sense(self._truth, on_board)
+            self._reading = self._suite.sense(self._truth, self.errand.on_board)
+            self._jams.after(self._reading, self.head)
         return self._reading
 
     def step(self, command: Command) -> None:
@@ -115,7 +122,8 @@ class World:
         if not command.is_finite():
             raise ValueError(f"a command must be finite, got {command}")
         self.sense()  # whether or not anybody asked: sensors measure when they are due
-        self.robot.command(command)
+        flat = self.battery is not None and self.battery.empty
+        self.robot.command(replace(command, drive=None) if flat else command)
         if command.head is not None:
             self.head.command(command.head)
         self._prepare()
@@ -143,6 +151,10 @@ class World:
                 self._named(name).put(pose.x, pose.y, pose.theta)
             case Change(weather):
                 self._truth.weather = weather
+            case Jam(0):
+                self.head.free()
+            case Jam(how):
+                self.head.stick(how)
         self._room, self._scene_tick = 0.0, -1
 
     def _named(self, name: str) -> Thing:
@@ -192,9 +204,11 @@ class World:
         self.head.move(self.period)
         moved = math.hypot(robot.pose.x - before.x, robot.pose.y - before.y)
         self._room -= moved + self._things.fastest() * self.period
+        if self.battery is not None:
+            self.battery.update(robot.standing, self._at_charger(), self.period)
         self._update_truth()
-        if self.donor is not None and self.hand_over is not None:
-            self.hand_over.update(self.donor_gap, robot.standing, self.period)
+        if self.donors:
+            self.errand.update(self.time, self.donor_gaps, robot.standing, self.home_distance, self.period)
         self._suite.update(self._truth)
         self._reading = None
 
@@ -202,7 +216,6 @@ class World:
 
     def _first_truth(self) -> Truth:
         robot, weather, ground = self.robot, self.scenario.weather, self.scenario.ground
-        donor = -1 if self.donor is None else self.donor.index
         still = Currents(0.0, True, 0.0, 0.0)
         return Truth(
             tick=0,
@@ -220,8 +233,8 @@ class World:
             load=still,
             flippers=FlipperState(0.0, False),
             touched=(),
-            beacon=self._beacon(),
-            donor=donor,
+            beacons=self._beacons(),
+            battery=self._battery(),
             weather=weather,
             ground=ground,
             scene=self.scene,
@@ -237,10 +250,19 @@ class World:
         truth.still_for = truth.still_for + self.period if still else 0.0
         truth.head, truth.head_still_for = self.head.state, self.head.still_for
         truth.touched = self._contacts.bearings
-        truth.beacon = self._beacon()
+        if self.donors:
+            truth.beacons = self._beacons()
+        if self.battery is not None:
+            truth.battery = self._battery()
 
-    def _beacon(self) -> Vec2 | None:
-        return None if self.donor is None else (self.donor.x, self.donor.y)
+    def _beacons(self) -> tuple[Beacon, ...]:
+        return tuple(Beacon(thing.placed.id, (thing.x, thing.y), thing.index) for thing in self.donors)
+
+    def _battery(self) -> tuple[float, bool] | None:
+        return None if self.battery is None else (self.battery.level, self.battery.charging)
+
+    def _at_charger(self) -> bool:
+        return any(self._gap(thing) <= thing.placed.charges for thing in self._chargers)
 
     def scene(self) -> Scene:
         """The outlines of all things where they are now."""
@@ -263,12 +285,13 @@ class World:
         return self._contacts.begun
 
     @property
-    def donor_gap(self) -> float:
-        """Distance [m] between the hulls of robot and donor; endless without a donor."""
-        if self.donor is None:
-            return math.inf
-        way = math.hypot(self.donor.x - self.robot.pose.x, self.donor.y - self.robot.pose.y)
-        return way - self.robot.build.radius - self.donor.reach
+    def donor_gaps(self) -> list[float]:
+        """Distances [m] between the hulls of the robot and of each donor."""
+        return [self._gap(thing) for thing in self.donors]
+
+    def _gap(self, thing: Thing) -> float:
+        pose = self.robot.pose
+        return math.hypot(thing.x - pose.x, thing.y - pose.y) - self.robot.build.radius - thing.reach
 
     @property
     def home_distance(self) -> float:
@@ -294,6 +317,21 @@ class World:
         places = [robot.body.local_to_world(point) for point in hull]
         found = [self._space.point_query_nearest(place, reach, robot.shapes[0].filter) for place in places]
         return min([FAR, *(near.distance for near in found if near is not None)])
+
+
+class _Jams:
+    """Fixations that jam the head, by chance."""
+
+    def __init__(self, sensors: tuple[Installed, ...], seed: int) -> None:
+        self._chance_of = max([s.build.stuck for s in sensors if isinstance(s.build, StereoBuild)], default=0.0)
+        self._chance = named_chance(seed, "jams")
+
+    def after(self, reading: Reading, head: PanTilt) -> None:
+        """A fixation has been made, perhaps."""
+        stereo = reading.stereo
+        steep = stereo is not None and stereo.fresh and stereo.tilt > STEEP
+        if self._chance_of and steep and self._chance.random() < self._chance_of:
+            head.stick(int(self._chance.choice((LIGHT, BAD), p=(0.7, 0.3))))
 
 
 class _Contacts:

@@ -19,6 +19,7 @@ import yaml
 
 from behaviours.interface import Pose, Vec2
 from sim.raycast import Circle, Outline, box
+from sim.robots.battery import BatteryBuild
 from sim.robots.build import Ackermann, Build, Differential, DriveBuild, SkidSteer, Synchro
 from sim.robots.models import MODELS
 from sim.scenarios.scenario import (
@@ -32,6 +33,7 @@ from sim.scenarios.scenario import (
     DonorSpec,
     Event,
     Goal,
+    Jam,
     KeepClear,
     Put,
     RobotSpec,
@@ -305,6 +307,10 @@ def _cart(at: Vec2, heading: Amount, size: Vec2, height: float, mass: float, rol
     return ThingSpec("cart", box(*size), height, at, heading, mass, roll, id=id)
 
 
+def _charger(at: Vec2, radius: float, reach: float, id: str) -> ThingSpec:
+    return ThingSpec("charger", Circle(radius), 0.6, at, id=id, charges=reach)
+
+
 def _plain(
     kind: str,
     outline: Outline,
@@ -390,6 +396,7 @@ THINGS: dict[str, Spec[ThingSpec]] = {
         roll=Key(roll, None),
         id=identity,
     ),
+    "charger": record(_charger, at=Key(point), radius=Key(positive, 0.15), reach=Key(positive, 0.5), id=identity),
     "disc": record(_disc, radius=Key(positive), **place_of_thing),
     "box": record(_box, size=Key(size), heading=heading, **place_of_thing),
     "polygon": record(_polygon, vertices=Key(corners), heading=heading, **place_of_thing),
@@ -456,7 +463,7 @@ BUILDS: dict[str, tuple[SensorBuild, dict[str, Spec[Any]]]] = {
     "infrared": (InfraredBuild(), {"period": duration, "sd": spread, "offset_sd": angle}),
     "stereo": (
         StereoBuild(),
-        {"period": duration, "camera_height": positive, "linear": spread, "quadratic": spread},
+        {"period": duration, "camera_height": positive, "linear": spread, "quadratic": spread, "stuck": share},
     ),
     "odometry": (OdometryBuild(), {"scale_sd": spread, "turn_sd": spread}),
     "compass": (
@@ -539,6 +546,7 @@ def _robot(
     height: float | None,
     drive: DriveBuild | None,
     sensors: tuple[Installed, ...] | None,
+    battery: BatteryBuild | None,
     **rest: Any,
 ) -> RobotSpec:
     if shape is not None and radius is not None:
@@ -558,7 +566,7 @@ def _robot(
     for kind in BUILDS:
         if rest[kind] is not None:
             carried = _changed(carried, kind, rest[kind])
-    return RobotSpec(start, heading, build, carried)
+    return RobotSpec(start, heading, build, carried, battery)
 
 
 def _limited(drive: DriveBuild, limits: dict[str, Any]) -> DriveBuild:
@@ -590,6 +598,7 @@ robot = record(
     height=Key(positive, None),
     drive=Key(by_kind(DRIVES), None),
     sensors=Key(Spec(_sensors, sensor_list.schema), None),
+    battery=Key(_of(BatteryBuild(), {"lasts": duration, "charges_in": duration, "level": share}), None),
     **{name: Key(drives[name], None) for name in LIMITS},
     **{kind: Key(_changes(BUILDS[kind][1]), None) for kind in BUILDS},
 )
@@ -611,7 +620,16 @@ donor = record(
     reach=Key(positive, 0.92),
     hand_over=Key(moment, 15.0),
     move=Key(move, None),
+    trips=Key(whole(1, 1000), 1, doc="how many objects it holds"),
+    id=Key(word, "donor"),
 )
+
+
+def _home(unload: float) -> float:
+    return unload
+
+
+home = record(_home, unload=Key(duration, doc="of standing at home until an object is taken off"))
 goal = record(Goal, at=Key(point), within=Key(positive, 1.0), no_contact=Key(flag, False))
 place = scalar_or(choice("robot", "donor"), point)
 strip = record(KeepClear, **{"from": Key(place, goes_to="start")}, to=Key(place, goes_to="end"), by=Key(length))
@@ -631,10 +649,17 @@ def _ground(slopes: tuple[Slope, ...]) -> Ground:
     return Ground(slopes)
 
 
-def _event(at: float, vanish: str | None, put: tuple[str, Pose] | None, weather: Weather | None) -> Event:
-    given = [what for what in (vanish, put, weather) if what is not None]
+JAMS = ("free", "light-jam", "bad-jam", "worst-jam")
+
+
+def _event(
+    at: float, vanish: str | None, put: tuple[str, Pose] | None, weather: Weather | None, head: str | None
+) -> Event:
+    given = [what for what in (vanish, put, weather, head) if what is not None]
     if len(given) != 1:
-        raise ValueError("give one of vanish, put and weather")
+        raise ValueError("give one of vanish, put, weather and head")
+    if head is not None:
+        return Event(at, Jam(JAMS.index(head)))
     if vanish is not None:
         return Event(at, Vanish(vanish))
     return Event(at, Put(*put)) if put is not None else Event(at, Change(weather or Weather()))
@@ -650,6 +675,7 @@ event = record(
     vanish=Key(word, None, doc="the id of a thing"),
     put=Key(record(_put, thing=Key(word), at=Key(pose)), None),
     weather=Key(weather, None),
+    head=Key(choice(*JAMS), None, doc="it gets stuck, or is freed"),
 )
 
 
@@ -674,7 +700,7 @@ fault = record(
 def _things(report: Report, node: yaml.Node, path: str) -> tuple[ThingSpec, ...] | Wrong:
     """Things whose ids differ."""
     things = thing_list(report, node, path)
-    taken = ["robot", "donor"]
+    taken = ["robot"]
     for index, thing in enumerate(() if isinstance(things, str) else things):
         if thing.id in taken:
             report.wrong(node.value[index], f"{path}[{index}].id", f"the name {thing.id!r} is taken")
@@ -685,11 +711,15 @@ def _things(report: Report, node: yaml.Node, path: str) -> tuple[ThingSpec, ...]
 thing_list: Spec[tuple[ThingSpec, ...]] = listed(by_kind(THINGS))
 
 
-def _scenario(ground: tuple[Slope, ...], **rest: Any) -> Scenario:
-    scenario = Scenario(ground=Ground(ground), **rest)
-    if scenario.donor is not None and scenario.goal is not None:
+def _scenario(
+    ground: tuple[Slope, ...], donor: DonorSpec | None, donors: tuple[DonorSpec, ...], home: float | None, **rest: Any
+) -> Scenario:
+    if donor is not None and donors:
+        raise ValueError("give 'donor' or 'donors', not both")
+    donors = donors if donor is None else (donor,)
+    if donors and rest["goal"] is not None:
         raise ValueError("a scenario has either a donor or a goal")
-    return scenario
+    return Scenario(ground=Ground(ground), donors=donors, unload=home, **rest)
 
 
 def _whole(report: Report, node: yaml.Node, path: str) -> Scenario | Wrong:
@@ -704,7 +734,14 @@ def _whole(report: Report, node: yaml.Node, path: str) -> Scenario | Wrong:
             report.wrong(_part(node, "faults", index), f"faults[{index}].sensor", message)
         elif message := wrong_fault(fault, scenario.robot.sensors):
             report.wrong(_part(node, "faults", index), f"faults[{index}]", message)
-    things = [thing.id for thing in scenario.things if thing.id] + (["donor"] if scenario.donor else [])
+    things = [spec.id for spec in scenario.donors]
+    for index, name in enumerate(things):
+        if name in ("robot", *things[:index]):
+            report.wrong(node, f"donors[{index}].id", f"the name {name!r} is taken")
+    for index, thing in enumerate(scenario.things):
+        if thing.id in things:
+            report.wrong(_part(node, "things", index), f"things[{index}].id", f"the name {thing.id!r} is taken")
+    things += [thing.id for thing in scenario.things if thing.id]
     for index, event in enumerate(scenario.events):
         match event.what:
             case Vanish(thing=name) | Put(thing=name) if name not in things:
@@ -727,6 +764,8 @@ keys_of_scenario: Spec[Scenario] = record(
     bounds=Key(region, doc="what is shown"),
     robot=Key(robot),
     donor=Key(donor, None, doc="the task: fetch its object"),
+    donors=Key(listed(donor, 1), (), doc="several; their ids differ"),
+    home=Key(home, None),
     goal=Key(goal, None, doc="the task: reach this place"),
     things=Key(Spec(_things, thing_list.schema), ()),
     scatter=Key(listed(scatter), ()),

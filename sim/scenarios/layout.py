@@ -23,13 +23,14 @@ from sim.scenarios.scenario import (
     SCATTERED,
     Amount,
     Between,
-    Change,
     DonorSpec,
     KeepClear,
     Place,
+    Put,
     Scatter,
     Scenario,
     ThingSpec,
+    Vanish,
 )
 from sim.scenarios.schema import Problem, ScenarioError
 from sim.things.thing import Placed, Travel
@@ -42,7 +43,7 @@ Strip = tuple[Vec2, Vec2, float]
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """Where everything stands at the start; where the scenario has a donor, it is the first of the things."""
+    """Where everything stands at the start; the donors are the first of the things."""
 
     start: Pose
     things: tuple[Placed, ...]
@@ -51,7 +52,7 @@ class Layout:
 def lay_out(scenario: Scenario, chance: Generator) -> Layout:
     """Draw what the scenario leaves open. Raises ScenarioError where scattered things find no room."""
     start = Pose(*scenario.robot.start, wrap(_drawn(scenario.robot.heading, chance)))
-    things = [] if scenario.donor is None else [_donor(scenario.donor)]
+    things = [_donor(spec) for spec in scenario.donors]
     for spec in scenario.things:
         there, heading = chance.random() < spec.present, _drawn(spec.heading, chance)
         if there:
@@ -60,7 +61,7 @@ def lay_out(scenario: Scenario, chance: Generator) -> Layout:
         things += _scattered(scatter, scenario, things, chance)
     things = _named(things)
     _check_start(scenario, things)
-    changing = {event.what.thing for event in scenario.events if not isinstance(event.what, Change)}
+    changing = {event.what.thing for event in scenario.events if isinstance(event.what, Vanish | Put)}
     return Layout(start, tuple(replace(thing, changes=thing.id in changing) for thing in things))
 
 
@@ -92,11 +93,20 @@ def _drawn(amount: Amount, chance: Generator) -> float:
 
 
 def _donor(spec: DonorSpec) -> Placed:
-    return Placed(DONOR, DONOR, Circle(spec.radius), Pose(*spec.at, 0.0), spec.height, motion=spec.move)
+    return Placed(spec.id, DONOR, Circle(spec.radius), Pose(*spec.at, 0.0), spec.height, motion=spec.move)
 
 
 def _placed(spec: ThingSpec, at: Vec2, heading: float) -> Placed:
-    return Placed(spec.id, spec.kind, spec.outline, Pose(*at, wrap(heading)), spec.height, spec.mass, spec.motion)
+    return Placed(
+        spec.id,
+        spec.kind,
+        spec.outline,
+        Pose(*at, wrap(heading)),
+        spec.height,
+        spec.mass,
+        spec.motion,
+        charges=spec.charges,
+    )
 
 
 def _named(things: list[Placed]) -> list[Placed]:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 from behaviours.interface import Pose, Vec2
 from sim.raycast import Circle, Outline
+from sim.robots.battery import BatteryBuild
 from sim.robots.build import Build
 from sim.sensors.build import Fault, Installed
 from sim.sensors.weather import Weather
@@ -36,17 +37,18 @@ Amount = float | Between
 
 @dataclass(frozen=True, slots=True)
 class RobotSpec:
-    """start [m]; heading [rad, world]; sensors: names differ."""
+    """start [m]; heading [rad, world]; sensors: names differ; battery: None for one that never ends."""
 
     start: Vec2
     heading: Amount = 0.0
     build: Build = field(default_factory=Build)
     sensors: tuple[Installed, ...] = ()
+    battery: BatteryBuild | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class DonorSpec:
-    """at [m]; reach [m] of its arm, hull to hull; hand_over [s]; move: it goes elsewhere once."""
+    """at [m]; reach [m] of its arm, hull to hull; hand_over [s]; move: it goes elsewhere once; trips: its objects."""
 
     at: Vec2
     radius: float = 0.25
@@ -54,6 +56,8 @@ class DonorSpec:
     reach: float = 0.92
     hand_over: float = 15.0
     move: Shift | None = None
+    trips: int = 1
+    id: str = "donor"
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +71,10 @@ class Goal:
 
 @dataclass(frozen=True, slots=True)
 class ThingSpec:
-    """A thing; present: the chance that it is there; id: empty for its kind and a number."""
+    """A thing; present: the chance that it is there; id: empty for its kind and a number.
+
+    charges [m]: the gap between the hulls at which it charges a robot that stands; 0 for what is no charger.
+    """
 
     kind: str
     outline: Outline
@@ -78,6 +85,7 @@ class ThingSpec:
     motion: Motion | None = None
     present: float = 1.0
     id: str = ""
+    charges: float = 0.0
 
 
 Place = Vec2 | str
@@ -129,25 +137,33 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
+class Jam:
+    """The head gets stuck: 1 lightly, 2 badly, 3 so that only a person helps; 0: a person frees it."""
+
+    how: int
+
+
+@dataclass(frozen=True, slots=True)
 class Event:
     """What happens at a moment [s]."""
 
     time: float
-    what: Vanish | Put | Change
+    what: Vanish | Put | Change | Jam
 
 
 @dataclass(frozen=True, slots=True)
 class Scenario:
-    """A world to do a task in: fetch from the donor, or reach the goal; with neither the run lasts until its limit.
+    """A world to do a task in: fetch from the donors, or reach the goal; with neither the run lasts until its limit.
 
     bounds [m]: xmin, ymin, xmax, ymax of what is shown; time_limit [s]. source: where it was imported from; left_out:
-    what the import could not keep, in words.
+    what the import could not keep, in words. unload [s] of standing at home until an object is taken off; None: a
+    second until it counts as brought, and the last one stays on board.
     """
 
     name: str
     bounds: Box
     robot: RobotSpec
-    donor: DonorSpec | None = None
+    donors: tuple[DonorSpec, ...] = ()
     goal: Goal | None = None
     things: tuple[ThingSpec, ...] = ()
     scatter: tuple[Scatter, ...] = ()
@@ -156,8 +172,14 @@ class Scenario:
     events: tuple[Event, ...] = ()
     faults: tuple[Fault, ...] = ()
     time_limit: float = 1800.0
+    unload: float | None = None
     source: str = ""
     left_out: tuple[str, ...] = ()
+
+    @property
+    def donor(self) -> DonorSpec | None:
+        """The first of the donors."""
+        return self.donors[0] if self.donors else None
 
 
 CAR_SIZE = (4.4, 1.8)

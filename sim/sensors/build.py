@@ -74,12 +74,16 @@ class InfraredBuild:
 
 @dataclass(frozen=True, slots=True)
 class StereoBuild:
-    """period [s] of a fixation; camera_height [m]; linear, quadratic: the sd is linear * z + quadratic * z^2."""
+    """period [s] of a fixation; camera_height [m]; linear, quadratic: the sd is linear * z + quadratic * z^2.
+
+    stuck: chance that a fixation that looks down by more than 30 degrees jams the head.
+    """
 
     period: float = 9.0
     camera_height: float = 1.2
     linear: float = 0.003
     quadratic: float = 0.001
+    stuck: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from behaviours.interface import (
+    Battery,
     Bumper,
     Compass,
     Currents,
@@ -59,7 +60,7 @@ def biased(reading: Sensed, amount: float) -> Sensed:
             return replace(reading, x=x + amount, y=y + amount)
         case Currents(left=left, right=right):
             return replace(reading, left=left + amount, right=right + amount)
-        case HeadState() | Bumper() | FlipperState():
+        case HeadState() | Bumper() | FlipperState() | Battery():
             return reading
 
 
@@ -90,7 +91,7 @@ def blanked(reading: Sensed) -> Sensed:
             return replace(reading, x=NAN, y=NAN)
         case Currents():
             return replace(reading, left=NAN, right=NAN)
-        case HeadState() | Bumper() | FlipperState():
+        case HeadState() | Bumper() | FlipperState() | Battery():
             return reading
 
 

@@ -22,7 +22,7 @@ from behaviours.interface import IrReading, Pose, Vec2, wrap
 from sim.frames import FOOT, bearing
 from sim.raycast import Scene, cast, crossings, ray
 from sim.sensors.build import InfraredBuild
-from sim.sensors.truth import Truth
+from sim.sensors.truth import Beacon, Truth
 
 SIGNAL, EDGE, HEARD = 3.2, 25 * FOOT, 3.0
 HALF_FIELD = math.radians(30)
@@ -41,19 +41,25 @@ class BeaconReader:
 
     def measure(self, truth: Truth) -> tuple[IrReading]:
         """One fixation."""
-        stamp, pan, beacon = truth.time, truth.head.pan, truth.beacon
+        stamp, pan = truth.time, truth.head.pan
         noise, jitter, offset_noise, gust = self._chance.standard_normal(4).tolist()
         gusty = float(self._chance.random()) < truth.weather.gusts
-        if beacon is None:
-            return (IrReading(stamp, True, pan, False, math.nan, max(0.0, self._build.sd * noise)),)
         rocked = truth.weather.jitter * jitter + truth.weather.gust * gust * gusty
-        offset = wrap(bearing(truth.pose, beacon) - pan + rocked)
-        visible = abs(offset) < HALF_FIELD and _in_sight(truth.pose, beacon, truth.donor, truth.scene())
-        signal = _signal(truth.pose, beacon, offset) / _background(truth, beacon) if visible else 0.0
+        heard = [self._heard(truth, beacon, pan, rocked) for beacon in truth.beacons]
+        if not heard:
+            return (IrReading(stamp, True, pan, False, math.nan, max(0.0, self._build.sd * noise)),)
+        signal, offset, name = max(heard, key=lambda beacon: beacon[0])
         strength = max(0.0, signal + self._build.sd * noise)
-        detected = visible and strength > HEARD
+        detected = signal > 0 and strength > HEARD
         measured = offset + self._build.offset_sd * offset_noise if detected else math.nan
-        return (IrReading(stamp, True, pan, detected, measured, strength),)
+        return (IrReading(stamp, True, pan, detected, measured, strength, name if detected else ""),)
+
+    def _heard(self, truth: Truth, beacon: Beacon, pan: float, rocked: float) -> tuple[float, float, str]:
+        """Signal over noise (0 where it is out of sight), offset [rad] from the optical axis, and whose it is."""
+        offset = wrap(bearing(truth.pose, beacon.at) - pan + rocked)
+        visible = abs(offset) < HALF_FIELD and _in_sight(truth.pose, beacon, truth.scene())
+        signal = _signal(truth.pose, beacon.at, offset) / _background(truth, beacon) if visible else 0.0
+        return signal, offset, beacon.name
 
 
 def _signal(pose: Pose, beacon: Vec2, offset: float) -> float:
@@ -61,17 +67,18 @@ def _signal(pose: Pose, beacon: Vec2, offset: float) -> float:
     return SIGNAL * (EDGE / distance) ** 2 * math.cos(offset) ** 2
 
 
-def _background(truth: Truth, beacon: Vec2) -> float:
+def _background(truth: Truth, beacon: Beacon) -> float:
     """Noise, relative to a day without sun."""
     pose, sun = truth.pose, truth.weather.sun
-    if sun is None or abs(bearing(Pose(pose.x, pose.y, sun), beacon)) > SUN_NEAR:
+    if sun is None or abs(bearing(Pose(pose.x, pose.y, sun), beacon.at)) > SUN_NEAR:
         return 1.0
-    behind = crossings(ray(beacon, sun, SHADE_HEIGHT), SHADE_WITHIN, truth.scene()).thing
-    return 1.0 if (behind != truth.donor).any() else SUN_NOISE
+    behind = crossings(ray(beacon.at, sun, SHADE_HEIGHT), SHADE_WITHIN, truth.scene()).thing
+    return 1.0 if (behind != beacon.thing).any() else SUN_NOISE
 
 
-def _in_sight(pose: Pose, beacon: Vec2, donor: int, scene: Scene) -> bool:
+def _in_sight(pose: Pose, beacon: Beacon, scene: Scene) -> bool:
     """Whether the donor is the first thing on the way to its beacon."""
-    angle = math.atan2(beacon[1] - pose.y, beacon[0] - pose.x)
-    _, things = cast(ray((pose.x, pose.y), angle, BEAM_HEIGHT), math.dist((pose.x, pose.y), beacon), scene)
-    return int(things[0]) in (donor, -1)
+    x, y = beacon.at
+    angle = math.atan2(y - pose.y, x - pose.x)
+    _, things = cast(ray((pose.x, pose.y), angle, BEAM_HEIGHT), math.dist((pose.x, pose.y), (x, y)), scene)
+    return int(things[0]) in (beacon.thing, -1)

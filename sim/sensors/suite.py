@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-from behaviours.interface import NO_OTHERS, FlipperState, HeadState, Pose, Reading, Sensed
+from behaviours.interface import NO_OTHERS, Battery, FlipperState, HeadState, Pose, Reading, Sensed
 from sim.noise import named_chance, sensor_chance
 from sim.robots.build import Build, SkidSteer
 from sim.sensors import compass, gps, inclinometer, lidar, sonar
@@ -88,6 +88,8 @@ class Suite:
             said["head"] = HeadState(head.pan, head.tilt, head.settled, truth.time)
         if self._has_flippers:
             said["flippers"] = FlipperState(truth.flippers.angle, truth.flippers.deployed, truth.time)
+        if truth.battery is not None:
+            said["battery"] = Battery(truth.time, True, *truth.battery)
         return Reading(
             truth.time,
             truth.tick,

@@ -14,6 +14,15 @@ from sim.sensors.weather import Weather
 from sim.things.ground import Ground
 
 
+@dataclass(frozen=True, slots=True)
+class Beacon:
+    """name of the donor; at: place [m]; thing: index of the thing that carries it."""
+
+    name: str
+    at: Vec2
+    thing: int
+
+
 @dataclass(slots=True)
 class Truth:
     """The state of the world at `time` [s], `dt` [s] after the tick before.
@@ -21,8 +30,8 @@ class Truth:
     pose, speed [m/s] along x, turn_rate [rad/s], acceleration [m/s^2, robot frame]: of the hull. wheels: the motion
     that wheels or tracks made of it in this tick, slip included; aside [m/s]: what of it leads to the left, as the
     wheels know it. still_for, head_still_for [s]: how long base and head
-    have not moved. load: what the motors draw. touched: bearings [rad, robot frame] of contacts. beacon: place of the
-    donor's beacon, `donor` the index of the thing that carries it (None, -1 without a donor). scene: the outlines of
+    have not moved. load: what the motors draw. touched: bearings [rad, robot frame] of contacts. beacons: those of the
+    donors. battery: its level and whether it is charged; None without one. scene: the outlines of
     things as they are now, brought up to date when it is asked for.
     """
 
@@ -41,8 +50,8 @@ class Truth:
     load: Currents
     flippers: FlipperState
     touched: tuple[float, ...]
-    beacon: Vec2 | None
-    donor: int
+    beacons: tuple[Beacon, ...]
+    battery: tuple[float, bool] | None
     weather: Weather
     ground: Ground
     scene: Callable[[], Scene]

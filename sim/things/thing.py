@@ -140,7 +140,8 @@ Motion = Travel | Roll | Shift | Keyframes
 class Placed:
     """A thing where a scenario puts it. mass [kg]: 0 for what cannot be pushed; height [m] above the ground.
 
-    changes: something will happen to it at a set time.
+    changes: something will happen to it at a set time. charges [m]: the gap between the hulls at which it charges a
+    robot that stands; 0 for what is no charger.
     """
 
     id: str
@@ -151,6 +152,7 @@ class Placed:
     mass: float = 0.0
     motion: Motion | None = None
     changes: bool = False
+    charges: float = 0.0
 
     @property
     def moves(self) -> bool:

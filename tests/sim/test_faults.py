@@ -29,7 +29,7 @@ from sim.sensors.build import (
     StereoBuild,
 )
 from sim.sensors.suite import Suite
-from sim.sensors.truth import Truth
+from sim.sensors.truth import Beacon, Truth
 from sim.sensors.weather import Weather
 from sim.things.ground import Ground, Slope
 
@@ -72,8 +72,8 @@ def at(tick: int) -> Truth:
         load=Currents(0.0, True, 1.0 + 0.1 * tick, 2.0),
         flippers=FlipperState(0.0, False),
         touched=(0.3 * tick,),
-        beacon=(5.0, 0.0),
-        donor=0,
+        beacons=(Beacon("donor", (5.0, 0.0), 0),),
+        battery=None,
         weather=Weather(),
         ground=Ground((Slope((-9, -9, 9, 9), 0.1, 0.0),)),
         scene=lambda: ROOM,

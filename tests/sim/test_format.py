@@ -188,7 +188,7 @@ goal: {at: [4, 4], within: 50 cm, no_contact: true}
             "room.yaml:4:10: faults[0].sensor: the robot has no sensor 'sonra'",
         ),
         ("events: [{at: 1, vanish: bin}]", "room.yaml:4:10: events[0]: there is no thing 'bin'; none has an id"),
-        ("events: [{at: 1}]", "events[0]: give one of vanish, put and weather"),
+        ("events: [{at: 1}]", "events[0]: give one of vanish, put, weather and head"),
         ("faults: [{sensor: sonar, kind: dropout, amount: 3}]", "a chance from 0 to 1"),
         ("faults: [{sensor: sonar, kind: nan, at: 3, until: 2}]", "'until' must be later than 'at'"),
         ("donor: {at: [1, 1]}\ngoal: {at: [2, 2]}", "a scenario has either a donor or a goal"),

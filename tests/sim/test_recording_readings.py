@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from behaviours.interface import (
+    Battery,
     Bumper,
     Compass,
     Currents,
@@ -72,6 +73,7 @@ def every_sensor(n: int, chance: np.random.Generator) -> dict[str, Any]:
         "gps": Fix(t, fresh, lost, lost),
         "currents": Currents(t, True, math.inf if n == 7 else x, -math.inf if n == 8 else y),
         "bumper": Bumper(t, True, ring[::3], np.array([k == n for k in range(8)])),
+        "battery": Battery(t, n % 3 == 0, 0.1 * n, n > 4),
         "flippers": FlipperState(x, n > 4, t, n % 2 == 0),
     }
 

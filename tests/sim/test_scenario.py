@@ -101,7 +101,7 @@ things:
         "lot.yaml:7:25: donor.at: this key is here a second time",
         "lot.yaml:9:12: things[0].kind: no such kind as 'wal'; did you mean 'wall'?",
         "lot.yaml:10:5: things[1]: expected a mapping with a key 'kind', one of "
-        "wall, curb, parked-car, car, person, trashcan, post, cart, disc, box, polygon, outline",
+        "wall, curb, parked-car, car, person, trashcan, post, cart, charger, disc, box, polygon, outline",
     ]
 
 

@@ -34,7 +34,7 @@ from sim.sensors.odometry import WheelOdometry
 from sim.sensors.sonar import SonarRings
 from sim.sensors.stereo import VergingCameras, slant_range
 from sim.sensors.suite import Suite
-from sim.sensors.truth import Truth
+from sim.sensors.truth import Beacon, Truth
 from sim.sensors.weather import Weather
 from sim.things.ground import Ground
 from sim.world import World
@@ -68,8 +68,8 @@ def at(tick: int = 0, scene: Scene = NOTHING, pose: Pose = ORIGIN, **more: Any) 
         load=Currents(0.0, True, 0.0, 0.0),
         flippers=FlipperState(0.0, False),
         touched=(),
-        beacon=None,
-        donor=-1,
+        beacons=(),
+        battery=None,
         weather=CALM,
         ground=Ground(),
         scene=lambda: scene,
@@ -194,7 +194,8 @@ def scan(metres: float, seed: int, weather: Weather = CALM, behind: bool = False
     beacon = metres * math.cos(angle), metres * math.sin(angle)
     poses = [Pose(*beacon)] + [Pose((metres + 1) * math.cos(angle), (metres + 1) * math.sin(angle))] * behind
     scene = Scene([Circle(0.25)] * len(poses), poses, [0.9, 1.75][: len(poses)])
-    reader, here = BeaconReader(InfraredBuild(), rng(seed)), at(10, scene, beacon=beacon, donor=0, weather=weather)
+    beacons = (Beacon("donor", beacon, 0),)
+    reader, here = BeaconReader(InfraredBuild(), rng(seed)), at(10, scene, beacons=beacons, weather=weather)
     pans = np.radians(np.arange(-90, 91, 2))
     return [reader.measure(replace(here, head=HeadState(float(pan), 0.0, True)))[0] for pan in pans]
 
@@ -229,19 +230,21 @@ def test_the_sun_behind_the_donor_drowns_the_beacon_unless_somebody_stands_betwe
 def test_the_sun_that_comes_out_in_mid_run_drowns_the_beacon():
     beacon, scene = (5.0, 0.0), Scene([Circle(0.25)], [Pose(5.0, 0.0)], [0.9])
     reader = BeaconReader(InfraredBuild(), rng())
-    assert reader.measure(at(10, scene, beacon=beacon, donor=0))[0].detected
-    assert not reader.measure(at(20, scene, beacon=beacon, donor=0, weather=Weather(sun=0.0)))[0].detected
+    beacons = (Beacon("donor", beacon, 0),)
+    assert reader.measure(at(10, scene, beacons=beacons))[0].detected
+    assert not reader.measure(at(20, scene, beacons=beacons, weather=Weather(sun=0.0)))[0].detected
 
 
 def test_a_tall_donor_does_not_shade_its_own_beacon():
     tall = Scene([Circle(0.25)], [Pose(5.0, 0.0)], [1.8])
     reader = BeaconReader(InfraredBuild(), rng())
-    assert not reader.measure(at(10, tall, beacon=(5.0, 0.0), donor=0, weather=Weather(sun=0.0)))[0].detected
+    beacons = (Beacon("donor", (5.0, 0.0), 0),)
+    assert not reader.measure(at(10, tall, beacons=beacons, weather=Weather(sun=0.0)))[0].detected
 
 
 @pytest.mark.parametrize(("degrees", "heard"), [(0, True), (28, True), (-28, True), (33, False), (-33, False)])
 def test_the_reader_hears_within_thirty_degrees_of_its_axis(degrees, heard):
-    near = at(10, Scene([Circle(0.25)], [Pose(3.0, 0.0)], [0.9]), beacon=(3.0, 0.0), donor=0)
+    near = at(10, Scene([Circle(0.25)], [Pose(3.0, 0.0)], [0.9]), beacons=(Beacon("donor", (3.0, 0.0), 0),))
     aside = replace(near, head=HeadState(math.radians(degrees), 0.0, True))
     assert BeaconReader(InfraredBuild(), rng()).measure(aside)[0].detected == heard
 
@@ -421,7 +424,7 @@ def test_the_four_sensors_of_the_synchro_drive_draw_the_numbers_that_they_have_a
         Installed("infrared", InfraredBuild()),
     )
     windy = Weather(jitter=0.01, gust=0.1, gusts=0.5)
-    truth = at(0, scene, head=HeadState(-0.3, 0.2, True), beacon=(5.0, 0.0), donor=0, weather=windy)
+    truth = at(0, scene, head=HeadState(-0.3, 0.2, True), beacons=(Beacon("donor", (5.0, 0.0), 0),), weather=windy)
     suite = Suite(installed, (), Build(), ORIGIN, 7)
     reading = suite.sense(truth, False)
     for tick in range(1, 31):

@@ -226,8 +226,8 @@ def test_a_trashcan_that_rolls_into_a_post_gives_up(small):
 
 def test_the_donor_moves_by_what_is_said_and_when(small):
     world = World(small(donor="[3, 0]", more_donor="move: {starts: {at: 2}, by: [1, 0.5]}"), 0)
-    assert let(world, STOP, 2).donor.pose.x == 3
-    moved = let(world, STOP, 8).donor
+    assert let(world, STOP, 2).donors[0].pose.x == 3
+    moved = let(world, STOP, 8).donors[0]
     assert (moved.pose.x, moved.pose.y) == pytest.approx((4, 0.5))
     assert moved.speed == 0
 
@@ -237,7 +237,7 @@ def test_the_donor_moves_by_what_is_said_and_when(small):
 
 def test_the_object_changes_hands_after_fifteen_seconds_of_standing_in_reach(small):
     world = World(small(donor="[1.5, 0]"), 0)
-    assert world.donor_gap == pytest.approx(0.9)
+    assert world.donor_gaps[0] == pytest.approx(0.9)
     assert not let(world, STOP, 14.9).sense().object_on_board
     assert let(world, STOP, 0.1).sense().object_on_board
     assert let(world, BACK, 5).sense().object_on_board
@@ -246,9 +246,9 @@ def test_the_object_changes_hands_after_fifteen_seconds_of_standing_in_reach(sma
 def test_moving_within_reach_begins_the_hand_over_anew(small):
     world = let(World(small(donor="[1.4, 0]"), 0), STOP, 10)
     let(let(world, AHEAD, 0.5), STOP, 0.5)
-    assert not let(world, STOP, 14).hand_over.on_board
-    assert let(world, STOP, 1.5).hand_over.on_board
+    assert not let(world, STOP, 14).errand.on_board
+    assert let(world, STOP, 1.5).errand.on_board
 
 
 def test_out_of_reach_nothing_changes_hands(small):
-    assert not let(World(small(donor="[1.55, 0]"), 0), STOP, 20).hand_over.on_board
+    assert not let(World(small(donor="[1.55, 0]"), 0), STOP, 20).errand.on_board
