@@ -16,15 +16,19 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from behaviours.competences.fixate import Fixate
-from behaviours.competences.natigation import GazeSettings, Natigate
+from behaviours.competences.natigation import GazeSettings, Natigate, Traffic
 from behaviours.competences.runaway import Runaway
 from behaviours.competences.steady import Steady
 from behaviours.competences.stop import Stop
 from behaviours.cores.circles import CircleSettings
+from behaviours.cores.collision import GateSettings
+from behaviours.cores.commitment import CommitmentSettings
 from behaviours.cores.crossing import CrossingSettings
+from behaviours.cores.evidence import EvidenceSettings
 from behaviours.cores.ground import GroundSettings
 from behaviours.cores.nat import NatSettings
 from behaviours.cores.runaway import RunawaySettings
+from behaviours.cores.sectors import LidarRing, RingOf, skirt, waist
 from behaviours.estimators import ir_search, stereo_search
 from behaviours.estimators.danger import Danger
 from behaviours.estimators.donor import DonorMemory, DonorSettings
@@ -33,9 +37,11 @@ from behaviours.estimators.ir_search import IrSearch, IrSettings
 from behaviours.estimators.latest import Latest
 from behaviours.estimators.navigation import ArrivalSettings, NavigationGoal
 from behaviours.estimators.obstacles import DeadlockSettings, Obstacles
+from behaviours.estimators.patrol import Patrol, PatrolSettings
+from behaviours.estimators.perception import PerceptionSettings
 from behaviours.estimators.sensed import Sensed, SensedSettings
 from behaviours.estimators.stereo_search import StereoSearch, StereoSettings
-from behaviours.interface import Channels, Function, Library, Offer, Parameter, Values, Workshop
+from behaviours.interface import Channels, Function, Library, Offer, Parameter, Pose, Values, Workshop
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -113,11 +119,30 @@ _RUNAWAY = _parameters(
     ("min_range", "m", "Shorter ranges count as this, so that no echo outweighs all others (chosen here)."),
     ("pinch", "", "Below this share of their sum the echoes count as a symmetric pinch (chosen here)."),
 )
+_RANGES = Parameter("ranges", "symbol", "", "sonar", "From `sonar` rings, or from a `lidar` in their place.")
+_HULL = Parameter("hull-radius", "number", "m", 0.35, "From its middle to the hull, with `:ranges lidar` alone.")
+
+
+def _chosen(parameter: Parameter, values: Values, *known: str) -> str:
+    """The symbol that a plan gives, one of the known."""
+    value = str(values.get(parameter.name, parameter.default))
+    if value not in known:
+        raise ValueError(f"{parameter.name} must be {' or '.join(known)}, not {value}")
+    return value
+
+
+def _positive(name: str, value: float) -> float:
+    if not 0.0 < value < math.inf:
+        raise ValueError(f"{name} must be finite and more than 0, not {value}")
+    return value
 
 
 def _build_runaway(values: Values, workshop: Workshop) -> Offer:
     settings = _settings(RunawaySettings(), _RUNAWAY, values)
-    danger = workshop.share(Danger, lambda: Danger(settings))
+    hull = _positive("hull-radius", float(values.get("hull-radius", _HULL.default)))
+    from_lidar = _chosen(_RANGES, values, "sonar", "lidar") == "lidar"
+    rings: tuple[RingOf, ...] = (LidarRing(hull),) if from_lidar else (waist, skirt)
+    danger = workshop.share(Danger, lambda: Danger(settings, rings))
     return Offer(
         percepts={"anything-is-too-close": lambda: danger.is_near, "nearest-range": lambda: danger.nearest_range},
         competences={"move-away-from-danger": Runaway(lambda: danger.echoes, settings)},
@@ -132,7 +157,7 @@ RUNAWAY = Library(
         Function("nearest-range", "number", "The shortest range of both rings, from the hull.", unit="m"),
         _command("move-away-from-danger", "Drive away from the echoes within the safety radius.", "drive"),
     ),
-    _RUNAWAY,
+    (*_RUNAWAY, _RANGES, _HULL),
     _build_runaway,
 )
 
@@ -197,16 +222,80 @@ _GAZE = _parameters(
 )
 
 
+_PRESET = Parameter("preset", "symbol", "", "paper", "All switches off (`paper`) or on (`modern`).")
+_SWITCHES = tuple(
+    Parameter(name, "symbol", "", "preset", f"{doc} `on`, `off`, or as the `preset` has it.")
+    for name, doc in (
+        ("tracking", "What moves is followed, and the robot gives way to it in time."),
+        ("commitment", "A group that stands is passed on one side until that has paid."),
+        ("memory", "What stands is remembered in a grid instead of in circles that forget."),
+    )
+)
+_EVIDENCE = _parameters(
+    EvidenceSettings(),
+    ("cell", "m", "Side of a cell of the grid of `memory` and `tracking`."),
+    ("reach", "m", "The memory gives circles within this distance."),
+    ("keep", "s", "What is not heard again is forgotten after this time."),
+    ("kept_obstacles", "", "Greatest number of circles of the memory."),
+    ("was_free", "s", "An echo from where it was free this short a time ago is one of something that moves."),
+)
+_GATE = _parameters(
+    GateSettings(),
+    ("horizon", "s", "What moves and meets the robot later than this does not count."),
+    ("keep_off", "m", "A gap to what moves that is smaller counts as a collision."),
+)
+_PLACE = (
+    Parameter("goal-x", "number", "m", 0.0, "Of `(the-set-goal)`, in the odometry frame: ahead of the start."),
+    Parameter("goal-y", "number", "m", 0.0, "To the left of the start."),
+    Parameter("goal-heading", "number", "rad", 0.0, "Relative to the heading at the start."),
+)
+
+
+def _is_on(name: str, values: Values) -> bool:
+    """Whether a switch is on: by itself, or by the preset."""
+    modern = _chosen(_PRESET, values, "paper", "modern") == "modern"
+    switch = next(parameter for parameter in _SWITCHES if parameter.name == name)
+    return {"preset": modern, "on": True, "off": False}[_chosen(switch, values, "preset", "on", "off")]
+
+
+def _set_goal(values: Values) -> Pose:
+    x, y, theta = (float(values.get(parameter.name, parameter.default)) for parameter in _PLACE)
+    if not all(map(math.isfinite, (x, y, theta))):
+        raise ValueError("goal-x, goal-y and goal-heading must be finite")
+    return Pose(x, y, theta)
+
+
+def _obstacles(values: Values, nat: NatSettings, ring_of: RingOf) -> Obstacles:
+    perception = PerceptionSettings(
+        memory=_is_on("memory", values),
+        tracking=_is_on("tracking", values),
+        evidence=_settings(EvidenceSettings(), _EVIDENCE, values),
+    )
+    return Obstacles(
+        _settings(CircleSettings(), _CIRCLES, values),
+        nat,
+        _settings(DeadlockSettings(), _DEADLOCK, values),
+        NAVIGATE,
+        perception,
+        CommitmentSettings() if _is_on("commitment", values) else None,
+        ring_of,
+    )
+
+
 def _build_natigation(values: Values, workshop: Workshop) -> Offer:
     arrival = _settings(ArrivalSettings(), _ARRIVAL, values)
     nat = _settings(NatSettings(), _NAT, values)
-    circles = _settings(CircleSettings(), _CIRCLES, values)
-    deadlock = _settings(DeadlockSettings(), _DEADLOCK, values)
-    goal = _share(workshop, NavigationGoal, lambda: NavigationGoal(arrival), arrival, "natigation")
-    obstacles = workshop.share(Obstacles, lambda: Obstacles(circles, nat, deadlock, NAVIGATE))
-    natigate = Natigate(obstacles.plan_to, nat, _settings(GazeSettings(), _GAZE, values))
+    from_lidar = _chosen(_RANGES, values, "sonar", "lidar") == "lidar"
+    ring_of: RingOf = LidarRing(_positive("robot-width", nat.robot_width) / 2) if from_lidar else waist
+    goal = _share(workshop, NavigationGoal, lambda: NavigationGoal(arrival, ring_of), arrival, "natigation")
+    obstacles = workshop.share(Obstacles, lambda: _obstacles(values, nat, ring_of))
+    perception, gates = obstacles.perception, _settings(GateSettings(), _GATE, values)
+    traffic = Traffic(perception.moving_points, perception.velocities, gates) if perception.settings.tracking else None
+    natigate = Natigate(obstacles.plan_to, nat, _settings(GazeSettings(), _GAZE, values), ring_of, traffic)
+    set_goal = _set_goal(values)
     return Offer(
         percepts={"there-is-a-goal": goal.exists, "we-are-at-the-goal": lambda: goal.is_reached},
+        values={"the-set-goal": lambda channels: set_goal},
         competences={NAVIGATE: natigate},
     )
 
@@ -217,9 +306,10 @@ NATIGATION = Library(
     (
         _bool("there-is-a-goal", "The channel `goal` had a value in the last tick."),
         _bool("we-are-at-the-goal", "The robot stands at the goal of the last tick."),
+        Function("the-set-goal", "pose", "The pose of goal-x, goal-y and goal-heading."),
         _command(NAVIGATE, "Drive towards the channel `goal` among the obstacles.", "drive", "head", reads=("goal",)),
     ),
-    _ARRIVAL + _CIRCLES + _NAT + _DEADLOCK + _GAZE,
+    (_PRESET, *_SWITCHES, _RANGES, *_ARRIVAL, *_CIRCLES, *_NAT, *_DEADLOCK, *_GAZE, *_EVIDENCE, *_GATE, *_PLACE),
     _build_natigation,
 )
 
@@ -472,6 +562,50 @@ SENSORS = Library(
     _build_sensors,
 )
 
+# --- patrol -----------------------------------------------------------------------------------------
+
+_PATROL = _parameters(
+    PatrolSettings(),
+    ("length", "m", "Of the round, ahead of the start."),
+    ("width", "m", "Of the round, to the left of the start."),
+    ("within", "m", "A place has been visited this near to it."),
+) + (
+    Parameter(
+        "charger-x", "number", "m", PatrolSettings().charger_x, "Where to stand for charging, ahead of the start."
+    ),
+    Parameter("charger-y", "number", "m", PatrolSettings().charger_y, "The same, to the left of it."),
+)
+
+
+def _build_patrol(values: Values, workshop: Workshop) -> Offer:
+    numbers = {p.name.replace("-", "_"): float(values.get(p.name, p.default)) for p in _PATROL}
+    if min(numbers["length"], numbers["width"], numbers["within"]) <= 0:
+        raise ValueError("length, width and within must be greater than 0")
+    patrol = workshop.share(Patrol, lambda: Patrol(PatrolSettings(**numbers)))
+    return Offer(
+        percepts={
+            "battery-level": lambda: patrol.level,
+            "the-battery-is-charged": lambda: patrol.is_charging,
+            "rounds-made": patrol.rounds,
+        },
+        values={"the-next-place": lambda _: patrol.next_place(), "the-charger": lambda _: patrol.charger()},
+    )
+
+
+PATROL = Library(
+    "patrol",
+    "A round of four places, and a charger to return to.",
+    (
+        Function("battery-level", "number", "From 0, empty, to 1; 1 on a robot that has none."),
+        _bool("the-battery-is-charged", "A charger fills it now."),
+        Function("rounds-made", "number", "Whole rounds."),
+        Function("the-next-place", "pose", "Of the round."),
+        Function("the-charger", "pose", "Where to stand for charging."),
+    ),
+    _PATROL,
+    _build_patrol,
+)
+
 # --- drive ------------------------------------------------------------------------------------------
 
 _STEADY = (
@@ -519,7 +653,10 @@ def _share(workshop: Workshop, kind: type[Shared], make: Callable[[], Shared], s
 
 
 LIBRARIES: Mapping[str, Library] = MappingProxyType(
-    {item.name: item for item in (ROBOT, RUNAWAY, NATIGATION, IR_SEARCH, STEREO_SEARCH, FIND_AND_FETCH, SENSORS, DRIVE)}
+    {
+        item.name: item
+        for item in (ROBOT, RUNAWAY, NATIGATION, IR_SEARCH, STEREO_SEARCH, FIND_AND_FETCH, SENSORS, PATROL, DRIVE)
+    }
 )
 """Every library, by name."""
 

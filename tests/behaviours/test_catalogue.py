@@ -22,6 +22,7 @@ def test_the_libraries_are_there():
         "find-and-fetch",
         "ir-search",
         "natigation",
+        "patrol",
         "robot",
         "runaway",
         "sensors",
