@@ -1,7 +1,7 @@
 """A round of four places, and a place to charge at.
 
-Takes: odometry and the battery. Gives: the next place of the round, how many rounds were made, the place of the charger,
-the level of the battery. Leaves alone: the way there, and when to charge (a plan decides).
+Takes: odometry and the battery. Gives: the next place of the round, how many rounds were made, the place of the
+charger, the level of the battery. Leaves alone: the way there, and when to charge (a plan decides).
 
 The round is a rectangle that lies ahead of where the robot started: straight ahead, to the left, back, and home.
 """
