@@ -14,11 +14,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+import numpy as np
+
 from behaviours.cores.circles import Circle
 from behaviours.cores.geometry import bearing, distance
 from behaviours.interface import Pose, wrap
 
 Spin = Literal["cw", "ccw"]
+MANY = 24
+"""Circles from which on grouping is done with arrays."""
 Memory = Mapping[int, tuple[Spin, float]]
 """Circle -> the spin of its last group, and the stamp [s] until which that spin is locked."""
 
@@ -140,6 +144,8 @@ def link(circles: Sequence[Circle], before: Mapping[int, int], settings: NatSett
     from sweep to sweep, so a new one counts with those that it overlaps.
     """
     apart = settings.robot_width + 2 * settings.group_margin
+    if len(circles) > MANY:
+        return _link_many(circles, before, apart, settings.group_hysteresis)
     gaps = [[math.hypot(a.x - b.x, a.y - b.y) - a.radius - b.radius for b in circles] for a in circles]
     grouped = _grouped_before(circles, gaps, before)
     count = range(len(circles))
@@ -151,6 +157,19 @@ def link(circles: Sequence[Circle], before: Mapping[int, int], settings: NatSett
         )
         for i in count
     )
+
+
+def _link_many(
+    circles: Sequence[Circle], before: Mapping[int, int], apart: float, hysteresis: float
+) -> tuple[tuple[int, ...], ...]:
+    """As `link`, for so many circles that arrays are quicker; a circle counts with its own group of before alone."""
+    x, y, radius = (np.array([getattr(c, name) for c in circles]) for name in ("x", "y", "radius"))
+    grouped = np.array([before.get(c.ident, -1) for c in circles])
+    gaps = np.hypot(x[:, None] - x, y[:, None] - y) - radius[:, None] - radius
+    same = (grouped[:, None] == grouped) & (grouped >= 0)
+    near = gaps < apart + hysteresis * same
+    np.fill_diagonal(near, False)
+    return tuple(tuple(np.flatnonzero(row).tolist()) for row in near)
 
 
 def _grouped_before(
@@ -230,7 +249,9 @@ def _assess(spans: Sequence[Span], memory: Memory, now: float, settings: NatSett
     inherited = [memory[s[0]] for s in spans if s[0] in memory]
     locked = [(spin, until) for spin, until in inherited if until > now]
     if locked:
-        spin, until = max(locked, key=lambda lock: lock[1])
+        until = max(lock[1] for lock in locked)
+        latest = [lock[0] for lock in locked if lock[1] == until]
+        spin = max(latest, key=latest.count)
     else:
         spin, until = _choose([spin for spin, _ in inherited], left, right, settings), 0.0
     return Group(tuple(s[0] for s in spans), spin, left, right, min(s[3] for s in spans), until, False)

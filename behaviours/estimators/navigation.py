@@ -1,6 +1,6 @@
 """Where the robot is to go, and whether it is there.
 
-Takes: the `goal` channel of the last tick, odometry, the waist ring. Gives: the goal and arrival.
+Takes: the `goal` channel of the last tick, odometry, the ring. Gives: the goal and arrival.
 Leaves alone: the way.
 """
 
@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from behaviours.cores.geometry import bearing, distance
+from behaviours.cores.sectors import RingOf, waist
 from behaviours.interface import Channels, Pose, Ranges, Reading, Report, wrap
 
 
@@ -34,8 +35,9 @@ class ArrivalSettings:
 class NavigationGoal:
     """The goal of the last tick, and arrival with hysteresis."""
 
-    def __init__(self, settings: ArrivalSettings) -> None:
+    def __init__(self, settings: ArrivalSettings, ring_of: RingOf = waist) -> None:
         self.settings = settings
+        self._ring_of = ring_of
         self.goal: Pose | None = None
         self.is_reached = False
 
@@ -59,7 +61,9 @@ class NavigationGoal:
             return away <= s.goal_tolerance + s.leave
         if away <= s.arrival:
             return True
-        return away <= s.goal_tolerance and self._is_blocked(reading.sonar, wrap(bearing(pose, goal) - pose.theta))
+        return away <= s.goal_tolerance and self._is_blocked(
+            self._ring_of(reading), wrap(bearing(pose, goal) - pose.theta)
+        )
 
     def _is_blocked(self, ring: Ranges | None, direction: float) -> bool:
         if ring is None:

@@ -1,6 +1,6 @@
 """Obstacles around the robot, and the side on which each is passed.
 
-Takes: every fresh sweep of the waist ring, odometry, last tick's `goal`. Gives: circles, and the plan towards a goal.
+Takes: every fresh sweep of the ring, odometry, last tick's `goal`. Gives: circles, and the plan towards a goal.
 Leaves alone: driving. It goes on whoever drives, so that a plan survives a tick of running away.
 """
 
@@ -9,12 +9,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from behaviours.cores.circles import Circles, CircleSettings, perceive
-from behaviours.cores.cone import echoes_of
+from behaviours.cores.circles import Circles, CircleSettings
+from behaviours.cores.commitment import CommitmentSettings, Locks, commit, inherit, turned
 from behaviours.cores.geometry import distance
 from behaviours.cores.nat import Memory, NatPlan, NatSettings, contradicted, make_plan, opposite
+from behaviours.cores.sectors import RingOf, waist
 from behaviours.estimators.navigation import as_goal
-from behaviours.interface import Channels, Pose, Ranges, Reading, Report, Vec2
+from behaviours.estimators.perception import Perception, PerceptionSettings
+from behaviours.interface import Channels, Pose, Reading, Report
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,31 +31,46 @@ class DeadlockSettings:
 
 
 class Obstacles:
-    """The circles, and the latest plan among them. driver: the competence whose lack of progress counts."""
+    """The circles, and the latest plan among them.
 
-    def __init__(self, circles: CircleSettings, nat: NatSettings, deadlock: DeadlockSettings, driver: str) -> None:
-        self._circles, self._nat, self._deadlock = circles, nat, deadlock
-        self.memory = Circles()
+    driver: the competence whose lack of progress counts. commitment: None flips spins as the paper does.
+    """
+
+    def __init__(
+        self,
+        circles: CircleSettings,
+        nat: NatSettings,
+        deadlock: DeadlockSettings,
+        driver: str,
+        perception: PerceptionSettings | None = None,
+        commitment: CommitmentSettings | None = None,
+        ring_of: RingOf = waist,
+    ) -> None:
+        self._nat, self._deadlock, self._commitment, self._ring_of = nat, deadlock, commitment, ring_of
+        self.perception = Perception(circles, perception or PerceptionSettings())
         self.plan: NatPlan | None = None
         self._spins: Memory = {}
+        self._locks: Locks = {}
         self._driver = driver
         self._since: tuple[float, Pose] | None = None
 
+    @property
+    def memory(self) -> Circles:
+        """The circles that forget."""
+        return self.perception.memory
+
     def update(self, reading: Reading, reports: Mapping[str, Report], channels: Channels) -> None:
         pose = reading.odometry.pose
-        sonar = reading.sonar
-        fresh = sonar is not None and sonar.fresh
-        if sonar is not None and fresh:
-            self.memory = perceive(self.memory, self._echoes(sonar, pose), self._circles)
+        ring = self._ring_of(reading)
+        fresh = ring is not None and ring.fresh
+        if ring is not None and fresh:
+            self.perception.take(ring, pose, reading.stamp)
         goal = as_goal(channels)
         if goal is None:
             self._forget_plan()
         elif fresh or self.plan is None or self.plan.goal != goal:
             self._replan(pose, goal, reading.stamp)
         self._mind_progress(reading, self._driver in reports and goal is not None)
-
-    def _echoes(self, ring: Ranges, pose: Pose) -> list[tuple[float, Vec2]]:
-        return echoes_of(ring, pose, self._circles.half_cone, self._circles.neighbours_near)
 
     def plan_to(self, pose: Pose, goal: Pose, now: float) -> NatPlan:
         """The plan from the robot to the goal at stamp now [s]: the latest one if that is its goal."""
@@ -64,15 +81,22 @@ class Obstacles:
     def _make(self, pose: Pose, goal: Pose, now: float) -> NatPlan:
         same = self.plan is not None and distance(self.plan.goal, goal) <= self._deadlock.new_goal
         before = self.plan.grouping if self.plan is not None else {}
-        return make_plan(self.memory.circles, pose, goal, before, self._spins if same else {}, now, self._nat)
+        spins = self._spins if same else {}
+        return make_plan(self.perception.circles, pose, goal, before, spins, now, self._nat)
 
     def _replan(self, pose: Pose, goal: Pose, now: float) -> None:
+        if self.plan is not None and distance(self.plan.goal, goal) > self._deadlock.new_goal:
+            self._locks = {}
         self.plan = self._make(pose, goal, now)
         self._spins = self.plan.spins()
+        if self._commitment is not None:
+            moving = self.perception.velocities()
+            self._locks = commit(self.plan, self._locks, distance(pose, goal), moving, self._commitment)
+            self._spins = inherit(self._spins, self._locks)
 
     def _forget_plan(self) -> None:
         self.plan = None
-        self._spins = {}
+        self._spins, self._locks = {}, {}
 
     def _mind_progress(self, reading: Reading, driving: bool) -> None:
         pose = reading.odometry.pose
@@ -86,7 +110,13 @@ class Obstacles:
 
     def _turn_about(self, reading: Reading) -> None:
         group = contradicted(self.plan, self._nat) if self.plan is not None else None
-        if self.plan is not None and group is not None:
+        if self.plan is None or group is None:
+            return
+        pose, goal = reading.odometry.pose, self.plan.goal
+        if self._commitment is not None:
+            self._locks = turned(group, self._locks, distance(pose, goal))
+            self._spins = inherit(self._spins, self._locks)
+        else:
             locked = (opposite(group.spin), reading.stamp + self._deadlock.lock)
             self._spins = {**self._spins, **dict.fromkeys(group.idents, locked)}
-            self._replan(reading.odometry.pose, self.plan.goal, reading.stamp)
+        self._replan(pose, goal, reading.stamp)

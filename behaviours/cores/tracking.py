@@ -1,0 +1,134 @@
+"""What moves: clusters of echoes followed from sweep to sweep by their edges.
+
+Takes: the echoes of one sweep that come from something that moves, and the tracks so far. Gives: the tracks after it,
+with velocities. Leaves alone: which echoes those are.
+
+A thing that comes into view or leaves it has one edge that moves with it and one that is where the view ends, so each
+edge of the box about a cluster has an alpha-beta filter of its own, and the faster of two opposite edges is believed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from behaviours.interface import Vec2
+
+Edge = tuple[float, float]
+"""Place [m], velocity [m/s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrackSettings:
+    """alpha, beta: gains of the edges; link, gate [m]: within a cluster, and to its track; patience [s] without echo;
+    moving, fastest [m/s]: slower is standing, faster is not believed; sightings: sweeps until a velocity is believed."""
+
+    alpha: float = 0.6
+    beta: float = 0.3
+    link: float = 1.2
+    gate: float = 1.0
+    patience: float = 0.7
+    moving: float = 0.3
+    fastest: float = 3.0
+    sightings: int = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Track:
+    """A moving thing: its echoes at `stamp` [s], the edges of the box about them, and in how many sweeps it was heard."""
+
+    ident: int
+    stamp: float
+    points: tuple[Vec2, ...]
+    edges: tuple[Edge, Edge, Edge, Edge]
+    sightings: int = 1
+
+    @property
+    def velocity(self) -> Vec2:
+        """[m/s]"""
+        low_x, high_x, low_y, high_y = (edge[1] for edge in self.edges)
+        return max(low_x, high_x, key=abs), max(low_y, high_y, key=abs)
+
+    @property
+    def speed(self) -> float:
+        """[m/s]"""
+        return math.hypot(*self.velocity)
+
+
+@dataclass(frozen=True, slots=True)
+class Tracks:
+    """All that is followed."""
+
+    tracks: tuple[Track, ...] = ()
+    next_ident: int = 0
+
+    def moving(self, settings: TrackSettings) -> tuple[Track, ...]:
+        """Those that are known to move."""
+        return tuple(t for t in self.tracks if t.sightings >= settings.sightings and t.speed >= settings.moving)
+
+
+def follow(tracks: Tracks, points: Sequence[Vec2], now: float, settings: TrackSettings) -> Tracks:
+    """The tracks after a sweep with these echoes at stamp now [s]."""
+    free = list(tracks.tracks)
+    next_ident = tracks.next_ident
+    after = []
+    for cluster in cluster_of(points, settings.link):
+        at = _nearest(free, cluster, now, settings)
+        if at is None:
+            after.append(_new(next_ident, cluster, now))
+            next_ident += 1
+        else:
+            after.append(_updated(free.pop(at), cluster, now, settings))
+    after += [track for track in free if now - track.stamp <= settings.patience]
+    return Tracks(tuple(after), next_ident)
+
+
+def cluster_of(points: Sequence[Vec2], link: float) -> list[list[Vec2]]:
+    """Points that are reached from each other by steps of no more than `link` [m]."""
+    left = list(points)
+    clusters = []
+    while left:
+        cluster = [left.pop(0)]
+        for x, y in cluster:
+            near = [p for p in left if math.hypot(p[0] - x, p[1] - y) <= link]
+            left = [p for p in left if p not in near]
+            cluster += near
+        clusters.append(cluster)
+    return clusters
+
+
+def _box(points: Sequence[Vec2]) -> tuple[float, float, float, float]:
+    xs, ys = [p[0] for p in points], [p[1] for p in points]
+    return min(xs), max(xs), min(ys), max(ys)
+
+
+def _new(ident: int, points: Sequence[Vec2], now: float) -> Track:
+    a, b, c, d = _box(points)
+    return Track(ident, now, tuple(points), ((a, 0.0), (b, 0.0), (c, 0.0), (d, 0.0)))
+
+
+def _nearest(tracks: Sequence[Track], points: Sequence[Vec2], now: float, settings: TrackSettings) -> int | None:
+    """The place of the track that this cluster goes on, if there is one."""
+    gaps = []
+    for at, track in enumerate(tracks):
+        (vx, vy), dt = track.velocity, now - track.stamp
+        gap = min(math.hypot(p[0] - x - vx * dt, p[1] - y - vy * dt) for p in points for x, y in track.points)
+        gaps.append((gap, at))
+    best = min(gaps, default=(math.inf, 0))
+    return best[1] if best[0] <= settings.gate else None
+
+
+def _updated(track: Track, points: Sequence[Vec2], now: float, settings: TrackSettings) -> Track:
+    dt = now - track.stamp
+    if dt <= 0.0:
+        return track
+    a, b, c, d = (_filtered(edge, seen, dt, settings) for edge, seen in zip(track.edges, _box(points), strict=True))
+    return Track(track.ident, now, tuple(points), (a, b, c, d), track.sightings + 1)
+
+
+def _filtered(edge: Edge, seen: float, dt: float, settings: TrackSettings) -> Edge:
+    place, speed = edge[0] + edge[1] * dt, edge[1]
+    miss = seen - place
+    limit = settings.fastest
+    return place + settings.alpha * miss, min(limit, max(-limit, speed + settings.beta * miss / dt))
