@@ -22,6 +22,7 @@ COMMANDS = {
     "list": "List plans, libraries and what they offer.",
     "prove": "Prove what a plan promises, or show how it breaks it.",
     "repair": "Make a whole file of a recording that was cut short.",
+    "reproduce": "Run the experiments of a paper again, its figures beside ours.",
     "simulate": "Drive a robot through a world by a plan.",
     "sweep": "Run many episodes of a plan and keep a row of each.",
     "test": "Run the tests that stand in a plan.",

@@ -1,0 +1,1 @@
+"""The experiments that papers report, run again: the paper's figure beside ours, with a verdict."""

@@ -1,0 +1,86 @@
+"""One episode of an experiment, recorded, to be looked at.
+
+Takes: a row with a preset, the name of a case, a seed. Gives: a page that plays the episode, or a picture of it. Leaves
+alone: measuring.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from rplan.apps.files import InputError
+from rplan.apps.reproduce.experiment import Asked, plan_at, scenario_at, variant_of
+from rplan.apps.reproduce.row import Case
+from rplan.apps.simulation import Run, World, load_world, simulate
+from rplan.apps.sweep.work import changed
+from rplan.apps.wiring import compile_file
+from rplan.lang.suggest import close
+from sim.recording import Recording, read
+from sim.replay import write_replay
+from sim.scenarios.format import loads
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """Which episode."""
+
+    asked: Asked
+    case: Case
+
+
+def find(asked: Asked, seeds: int, name: str | None) -> Shown:
+    """The case of this name, without one the first. Raises InputError."""
+    cases = asked.row.cases(seeds)
+    if not cases:
+        raise InputError(f"{asked.row.name} drives nothing: there is nothing to replay")
+    if name is None:
+        return Shown(asked, cases[0])
+    for case in cases:
+        if case.name == name:
+            return Shown(asked, case)
+    names = [case.name for case in cases]
+    meant = close(name, names)
+    hint = f"did you mean '{meant}'?" if meant else f"there are: {', '.join(names)}"
+    raise InputError(f"{asked.row.name} has no case '{name}' ({hint})")
+
+
+@contextmanager
+def recorded(shown: Shown, seed: int) -> Iterator[tuple[Run, Recording]]:
+    """The episode, driven and recorded for as long as it is looked at. Raises GridError, ScenarioError, OSError."""
+    file = plan_at(shown.case.plan)
+    compiled = compile_file(file)
+    world = load_world(scenario_at(shown.case.scenario, file))
+    variant = variant_of(shown.asked, shown.case, world, compiled)
+    scenario = World(loads(variant.text, variant.file), variant.text)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "run.mcap"
+        run = simulate(changed(compiled, variant.changes), scenario, seed, record=path)
+        yield run, read(path)
+
+
+def in_words(run: Run) -> str:
+    """What came of it."""
+    verdict = run.verdict
+    minutes = f"{int(verdict.duration // 60)} min {verdict.duration % 60:04.1f} s"
+    return f"done in {minutes}" if verdict.done else f"not done: {verdict.reason}"
+
+
+def replay(shown: Shown, seed: int | None, file: Path) -> str:
+    """Write the page, and say what came of the episode; without a seed the first of the case."""
+    chosen = shown.case.seeds[0] if seed is None else seed
+    with recorded(shown, chosen) as (run, recording):
+        said = f"{shown.asked.row.name} ({shown.asked.preset}), {shown.case.name}, seed {chosen}: {in_words(run)}"
+        write_replay(recording, file, said)
+    return said
+
+
+def picture(shown: Shown, seed: int, file: Path) -> None:
+    """Draw the lot with the way that was driven. Raises ImportError without matplotlib."""
+    from rplan.apps.drawing.plot import draw
+
+    with recorded(shown, seed) as (run, recording):
+        draw(recording, file, f"{shown.asked.row.name}, {shown.case.name}: {in_words(run)}")
