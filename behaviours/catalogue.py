@@ -16,22 +16,26 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from behaviours.competences.fixate import Fixate
+from behaviours.competences.keep_station import KeepStation, StationSettings
 from behaviours.competences.natigation import GazeSettings, Natigate, Traffic
 from behaviours.competences.runaway import Runaway
 from behaviours.competences.steady import Steady
 from behaviours.competences.stop import Stop
+from behaviours.competences.un_stick import UnStick, UnStickSettings
 from behaviours.cores.circles import CircleSettings
 from behaviours.cores.collision import GateSettings
 from behaviours.cores.commitment import CommitmentSettings
-from behaviours.cores.crossing import CrossingSettings
+from behaviours.cores.crossing import DISAGREE, NO_CHANGE, TOO_FEW, CrossingSettings
 from behaviours.cores.evidence import EvidenceSettings
 from behaviours.cores.ground import GroundSettings
 from behaviours.cores.nat import NatSettings
 from behaviours.cores.runaway import RunawaySettings
 from behaviours.cores.sectors import LidarRing, RingOf, skirt, waist
 from behaviours.estimators import ir_search, stereo_search
+from behaviours.estimators.beacons import Beacons, BeaconSettings
 from behaviours.estimators.danger import Danger
 from behaviours.estimators.donor import DonorMemory, DonorSettings
+from behaviours.estimators.head import HeadWatch
 from behaviours.estimators.home import Home
 from behaviours.estimators.ir_search import IrSearch, IrSettings
 from behaviours.estimators.latest import Latest
@@ -39,6 +43,7 @@ from behaviours.estimators.navigation import ArrivalSettings, NavigationGoal
 from behaviours.estimators.obstacles import DeadlockSettings, Obstacles
 from behaviours.estimators.patrol import Patrol, PatrolSettings
 from behaviours.estimators.perception import PerceptionSettings
+from behaviours.estimators.roaming import Roaming, RoamingSettings
 from behaviours.estimators.sensed import Sensed, SensedSettings
 from behaviours.estimators.stereo_search import StereoSearch, StereoSettings
 from behaviours.interface import Channels, Function, Library, Offer, Parameter, Pose, Values, Workshop
@@ -222,6 +227,8 @@ _GAZE = _parameters(
 )
 
 
+AHEAD = math.radians(50.0)
+"""With commitment, only echoes within this of the heading slow the robot down: it goes along walls."""
 _PRESET = Parameter("preset", "symbol", "", "paper", "All switches off (`paper`) or on (`modern`).")
 _SWITCHES = tuple(
     Parameter(name, "symbol", "", "preset", f"{doc} `on`, `off`, or as the `preset` has it.")
@@ -285,6 +292,8 @@ def _obstacles(values: Values, nat: NatSettings, ring_of: RingOf) -> Obstacles:
 def _build_natigation(values: Values, workshop: Workshop) -> Offer:
     arrival = _settings(ArrivalSettings(), _ARRIVAL, values)
     nat = _settings(NatSettings(), _NAT, values)
+    if _is_on("commitment", values):
+        nat = replace(nat, minds=AHEAD)
     from_lidar = _chosen(_RANGES, values, "sonar", "lidar") == "lidar"
     ring_of: RingOf = LidarRing(_positive("robot-width", nat.robot_width) / 2) if from_lidar else waist
     goal = _share(workshop, NavigationGoal, lambda: NavigationGoal(arrival, ring_of), arrival, "natigation")
@@ -315,6 +324,21 @@ NATIGATION = Library(
 
 # --- the searches ---------------------------------------------------------------------------------
 
+
+def _search_preset(doc: str) -> Parameter:
+    return Parameter("preset", "symbol", "", "paper", doc)
+
+
+def _search_switch(name: str, doc: str) -> Parameter:
+    return Parameter(name, "symbol", "", "preset", f"{doc} `on`, `off`, or as the `preset` has it.")
+
+
+def _search_is_on(values: Values, preset: Parameter, switch: Parameter) -> bool:
+    """Whether a switch is on, by itself or by the preset of its library."""
+    modern = _chosen(preset, values, "paper", "modern") == "modern"
+    return {"preset": modern, "on": True, "off": False}[_chosen(switch, values, "preset", "on", "off")]
+
+
 _IR = _parameters(
     IrSettings(),
     ("sweep", "rad", "The head sweeps so far to either side (chosen here)."),
@@ -327,7 +351,11 @@ _IR = _parameters(
     ("turn_tolerance", "rad", "It has turned when it is this near (chosen here)."),
     ("steering_gain", "", "Turn rate per angle, 1/s (chosen here)."),
     ("max_turn_rate", "rad/s", "Greatest turn rate (chosen here)."),
+    ("listen_step", "rad", "With roam: from fixation to fixation all round (chosen here)."),
+    ("fine_sweep", "rad", "With roam: the sweep reaches so far to either side of what was heard (chosen here)."),
 )
+_IR_PRESET = _search_preset("`paper`, or `modern`, which turns `roam` on.")
+_ROAM = _search_switch("roam", "Listen all round in wide steps, turn to what is heard, and sweep only there.")
 _CROSSING = _parameters(
     CrossingSettings(),
     ("side", "", "Least number of fixations on either side of the plus-to-minus change (chosen here)."),
@@ -338,7 +366,8 @@ _CROSSING = _parameters(
 
 def _share_ir(workshop: Workshop, values: Values) -> IrSearch:
     crossing = _settings(CrossingSettings(), _CROSSING, values)
-    settings = replace(_settings(IrSettings(), _IR, values), crossing=crossing)
+    roam = _search_is_on(values, _IR_PRESET, _ROAM)
+    settings = replace(_settings(IrSettings(), _IR, values), crossing=crossing, roam=roam)
     return _share(workshop, IrSearch, lambda: IrSearch(settings), settings, "ir-search")
 
 
@@ -350,9 +379,13 @@ def _build_ir_search(values: Values, workshop: Workshop) -> Offer:
             "the-ir-search-is-finished": search.is_finished,
             "the-returned-angle-is-no-good": search.is_no_good,
             "we-know-the-donor-direction": search.knows_direction,
+            "too-few-ir-readings": lambda: search.failed_by(TOO_FEW),
+            "no-plus-to-minus-change": lambda: search.failed_by(NO_CHANGE),
+            "the-ir-readings-disagree": lambda: search.failed_by(DISAGREE),
+            "the-sun-is-suspected": search.failed_by_sun,
         },
         competences={
-            ir_search.START: Fixate(search.first_look, dict),
+            ir_search.START: Fixate(search.first_look, search.last_result),
             ir_search.CONTINUE: Fixate(search.look, search.progress, search.turn_rate),
         },
     )
@@ -366,10 +399,14 @@ IR_SEARCH = Library(
         _bool("the-ir-search-is-finished", "The last sweep came to its end."),
         _bool("the-returned-angle-is-no-good", "It came to its end without a direction."),
         _bool("we-know-the-donor-direction", "A direction was found, and nothing has spoken against it since."),
+        _bool("too-few-ir-readings", "The last sweep failed: the beacon was heard too rarely."),
+        _bool("no-plus-to-minus-change", "The last sweep failed: what was heard did not change from plus to minus."),
+        _bool("the-ir-readings-disagree", "The last sweep failed: the beacon rocked too much for a direction."),
+        _bool("the-sun-is-suspected", "The last sweep failed, and its faint signals look like a beacon in the sun."),
         _command(ir_search.START, "Begin a sweep from scratch.", "drive", "head"),
         _command(ir_search.CONTINUE, "Go on with the sweep.", "drive", "head"),
     ),
-    _IR + _CROSSING,
+    (_IR_PRESET, _ROAM, *_IR, *_CROSSING),
     _build_ir_search,
 )
 
@@ -393,12 +430,23 @@ _STEREO = _parameters(
     ("fixation_timeout", "s", "Longest wait for a fixation; then the head is freed (chosen here)."),
     ("unsticks", "", "Attempts to free the head before the search fails (chosen here)."),
     ("unstick_time", "s", "For so long it looks level to free itself (chosen here)."),
+    ("reach_slack", "m", "With from-horizon: what fits the strength of the beacon may be so far off (chosen here)."),
+    ("reach_share", "", "With from-horizon: and by this share of the distance (chosen here)."),
 )
+_UN_STICK = _parameters(
+    UnStickSettings(),
+    ("tilting", "s", "un-stick-the-head: so long the tilt alone is sent home (chosen here)."),
+    ("homing", "s", "un-stick-the-head: so long both axes are sent home, before a person is asked (chosen here)."),
+)
+_STUCK_AFTER = Parameter("stuck-after", "number", "s", 8.0, "A head that does not settle for longer is stuck.")
+_STEREO_PRESET = _search_preset("`paper`, or `modern`, which turns `from-horizon` on.")
+_FROM_HORIZON = _search_switch("from-horizon", "Look from far to near, for what fits the strength of the beacon.")
 
 
 def _share_stereo(workshop: Workshop, values: Values) -> StereoSearch:
     ground = _settings(GroundSettings(), _GROUND, values)
-    settings = replace(_settings(StereoSettings(), _STEREO, values), ground=ground)
+    from_horizon = _search_is_on(values, _STEREO_PRESET, _FROM_HORIZON)
+    settings = replace(_settings(StereoSettings(), _STEREO, values), ground=ground, from_horizon=from_horizon)
     if not settings.camera_height > ground.object_height > 0.0:
         raise ValueError("object-height must be more than 0 and less than camera-height")
     ir = workshop.share(IrSearch, lambda: IrSearch(IrSettings()))
@@ -406,20 +454,30 @@ def _share_stereo(workshop: Workshop, values: Values) -> StereoSearch:
     def bearing() -> float | None:
         return None if ir.direction is None else ir.direction.bearing
 
-    return _share(workshop, StereoSearch, lambda: StereoSearch(settings, bearing), settings, "stereo-search")
+    def reach() -> float | None:
+        return None if ir.direction is None else ir.direction.reach
+
+    return _share(workshop, StereoSearch, lambda: StereoSearch(settings, bearing, reach), settings, "stereo-search")
 
 
 def _build_stereo_search(values: Values, workshop: Workshop) -> Offer:
     search = _share_stereo(workshop, values)
+    patience = float(values.get(_STUCK_AFTER.name, _STUCK_AFTER.default))
+    head = workshop.share(HeadWatch, lambda: HeadWatch(patience))
     return Offer(
         percepts={
+            "the-head-is-stuck": lambda: head.is_stuck,
+            "the-head-needs-a-person": search.needs_help,
+            "the-returned-range": search.range_found,
+            "the-error-of-the-range": search.envelope,
             "stereo-ranging-is-started": search.is_started,
             "a-range-value-has-been-returned": search.is_finished,
             "the-range-value-is-no-good": search.is_no_good,
         },
         competences={
-            stereo_search.START: Fixate(search.first_look, dict),
+            stereo_search.START: Fixate(search.first_look, search.last_result),
             stereo_search.CONTINUE: Fixate(search.look, search.progress),
+            "un-stick-the-head": UnStick(_settings(UnStickSettings(), _UN_STICK, values)),
         },
     )
 
@@ -431,10 +489,17 @@ STEREO_SEARCH = Library(
         _bool("stereo-ranging-is-started", "A search is going on or has come to its end."),
         _bool("a-range-value-has-been-returned", "The search has come to its end."),
         _bool("the-range-value-is-no-good", "It has come to its end without a range within the cut-off."),
+        Function("the-returned-range", "number", "Distance of what was found, 0 where nothing is.", unit="m"),
+        Function("the-error-of-the-range", "number", "How far that range may be off, 0 where there is none.", unit="m"),
+        _bool("the-head-is-stuck", "It has not come to rest where it was sent for some time."),
+        _bool("the-head-needs-a-person", "The search has tried in vain to free the head."),
+        _command(
+            "un-stick-the-head", "Stand; send the tilt home, then both axes, then ask a person.", "drive", "head"
+        ),
         _command(stereo_search.START, "Begin a search from scratch.", "drive", "head"),
         _command(stereo_search.CONTINUE, "Go on with the search.", "drive", "head"),
     ),
-    _GROUND + _STEREO,
+    (_STEREO_PRESET, _FROM_HORIZON, *_GROUND, *_STEREO, *_UN_STICK, _STUCK_AFTER),
     _build_stereo_search,
 )
 
@@ -459,18 +524,49 @@ _DONOR = _parameters(
         "Driven off by more before the range is known, the direction is lost (chosen here).",
     ),
     ("stereo_attempts", "", "Failed stereo searches in one direction before it is given up (chosen here)."),
+    ("donors", "", "With several: how many donors there are."),
+    ("trips", "", "With several: how many objects each of them holds."),
 )
+_BEACONS = _parameters(
+    BeaconSettings(),
+    ("farthest", "m", "With several: no donor is farther from home (chosen here)."),
+)
+_ROAMING = _parameters(
+    RoamingSettings(),
+    ("approach", "m", "A beacon that was heard is listened to again from so near (chosen here)."),
+    ("near", "m", "A beacon heard on the way from nearer than this is worth a stop (chosen here)."),
+    ("apart", "m", "Places where the robot listens are so far apart (chosen here)."),
+    ("stalled", "s", "Getting no nearer to such a place for longer, the robot gives it up (chosen here)."),
+)
+_STATION = _parameters(
+    StationSettings(),
+    ("slack", "m", "keep-station: pushed off by less, the robot stays (chosen here)."),
+    ("heading_slack", "rad", "keep-station: turned by less, it stays (chosen here)."),
+    ("station_speed", "m/s", "keep-station: greatest speed (paper: of the base)."),
+)
+_FETCH_PRESET = _search_preset("`paper`, or `modern`, which turns `several` and `faint` on.")
+_SEVERAL = _search_switch("several", "Donors are told apart by their beacons, and served one after the other.")
+_FAINT = _search_switch("faint", "Signals below the reader's threshold tell where to listen next.")
+_ROUTE = Parameter("route", "symbol", "", "chance", "Listen next by `chance` to hear, or along a `spiral`.")
 
 
 def _build_find_and_fetch(values: Values, workshop: Workshop) -> Offer:
-    settings = _settings(DonorSettings(), _DONOR, values)
+    several = _search_is_on(values, _FETCH_PRESET, _SEVERAL)
+    settings = replace(_settings(DonorSettings(), _DONOR, values), several=several)
+    hearing = replace(_settings(BeaconSettings(), _BEACONS, values), faint=_search_is_on(values, _FETCH_PRESET, _FAINT))
+    spiral = _chosen(_ROUTE, values, "chance", "spiral") == "spiral"
+    roaming = replace(_settings(RoamingSettings(), _ROAMING, values), spiral=spiral)
     ir = workshop.share(IrSearch, lambda: _share_ir(workshop, {}))
     stereo = workshop.share(StereoSearch, lambda: _share_stereo(workshop, {}))
     goal = workshop.share(NavigationGoal, lambda: NavigationGoal(ArrivalSettings()))
     donor = workshop.share(DonorMemory, lambda: DonorMemory(settings, ir, stereo, goal))
     home, latest = workshop.share(Home, Home), workshop.share(Latest, Latest)
+    beacons = workshop.share(Beacons, lambda: Beacons(hearing))
+    roam = workshop.share(Roaming, lambda: Roaming(roaming, ir, donor, beacons))
     return Offer(
         percepts={
+            "a-donor-is-left": donor.is_left,
+            "it-is-time-to-listen": lambda: roam.is_due,
             "donor-has-been-located": donor.is_located,
             "we-already-have-the-widget": latest.object_on_board,
         },
@@ -478,7 +574,9 @@ def _build_find_and_fetch(values: Values, workshop: Workshop) -> Offer:
             "the-robots-home-position": lambda channels: home.pose,
             "set-goal-as-the-donors-location": lambda channels: donor.docking_pose(),
             "remember-the-current-goal-if-any": _current_goal,
+            "where-to-listen-next": lambda channels: roam.place,
         },
+        competences={"keep-station": KeepStation(_settings(StationSettings(), _STATION, values))},
     )
 
 
@@ -497,8 +595,12 @@ FIND_AND_FETCH = Library(
             "set-goal-as-the-donors-location", "pose", "Before the donor, looking at it; no goal while not located."
         ),
         Function("remember-the-current-goal-if-any", "pose", "The goal of the last tick.", reads=("goal",)),
+        _bool("a-donor-is-left", "With several: not everything was fetched from every donor."),
+        _bool("it-is-time-to-listen", "For a search that drives: stop here and listen."),
+        Function("where-to-listen-next", "pose", "For a search that drives: the place; none while a search goes on."),
+        _command("keep-station", "Hold place and heading against being pushed, by odometry.", "drive"),
     ),
-    _DONOR,
+    (_FETCH_PRESET, _SEVERAL, _FAINT, _ROUTE, *_DONOR, *_BEACONS, *_ROAMING, *_STATION),
     _build_find_and_fetch,
 )
 

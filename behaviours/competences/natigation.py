@@ -69,7 +69,7 @@ class Natigate:
         plan = self._plan_to(pose, goal, reading.stamp)
         error = wrap(plan.heading - pose.theta)
         ring = self._ring_of(reading)
-        nearest = math.inf if ring is None else float(np.nanmin(ring.ranges, initial=math.inf))
+        nearest = math.inf if ring is None else nearest_within(ring, error, self._settings.minds)
         speed, turn_rate = drive(error, nearest, self._settings)
         if self._traffic is not None:
             speed = self._give_way(pose, speed, ring, self._traffic.points(reading.stamp))
@@ -98,6 +98,14 @@ class Natigate:
         if self._told is None or self._told[0] is not plan:
             self._told = (plan, as_details(plan, self._traffic.velocities() if self._traffic is not None else {}))
         return self._told[1]
+
+
+def nearest_within(ring: Ranges, direction: float, half: float) -> float:
+    """The nearest range [m] up to `half` [rad] to either side of a direction [rad, robot frame]."""
+    if half >= math.pi:
+        return float(np.nanmin(ring.ranges, initial=math.inf))
+    aside = np.abs(np.remainder(ring.bearings - direction + math.pi, math.tau) - math.pi)
+    return float(np.nanmin(ring.ranges[aside <= half], initial=math.inf))
 
 
 def behind(ring: Ranges) -> float:

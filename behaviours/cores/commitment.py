@@ -38,12 +38,12 @@ Locks = Mapping[int, Lock]
 def commit(plan: NatPlan, locks: Locks, away: float, moving: Collection[int], settings: CommitmentSettings) -> Locks:
     """The locks after a plan; away [m] to the goal; moving: circles of what moves.
 
-    A group takes over the lock that most of its circles have. A circle that is forgotten has none.
+    A group takes over the lock that most of its circles have; one whose circles mostly move has none. A circle that is forgotten has none.
     """
     present = {circle.ident for circle in plan.circles}
     after = {ident: lock for ident, lock in locks.items() if ident in present and ident not in moving}
     for group in plan.groups:
-        if any(ident in moving for ident in group.idents):
+        if 2 * sum(ident in moving for ident in group.idents) > len(group.idents):
             after = {ident: lock for ident, lock in after.items() if ident not in group.idents}
             continue
         lock = _lock_of(group, after)

@@ -30,7 +30,7 @@ class EvidenceSettings:
     """cell, reach, before, radius [m]; keep, was_free [s]; kept_obstacles: the greatest number of circles.
 
     before: a beam frees nothing nearer to its echo. was_free: so long a place that was free makes an echo one of
-    something that moves. reach: circles are given within it about the robot.
+    something that moves. sure: so many sweeps in a row that go through it, a place is forgotten. reach: circles are given within it about the robot.
     """
 
     cell: float = 0.3
@@ -40,6 +40,7 @@ class EvidenceSettings:
     keep: float = 120.0
     was_free: float = 8.0
     kept_obstacles: int = 120
+    sure: int = 4
 
 
 class Evidence:
@@ -50,6 +51,8 @@ class Evidence:
         self._heard = np.full((SIDE, SIDE), NEVER)
         self._freed = np.full((SIDE, SIDE), NEVER)
         self._run = np.zeros((SIDE, SIDE), dtype=np.int64)
+        self._last = np.full((SIDE, SIDE), -2, dtype=np.int64)
+        self._sweep = 0
         self._x = np.zeros((SIDE, SIDE))
         self._y = np.zeros((SIDE, SIDE))
         self._window: tuple[float, NDArray[np.int64], NDArray[np.int64]] | None = None
@@ -57,6 +60,7 @@ class Evidence:
     def sweep(self, ring: Ranges, pose: Pose, echoes: Sequence[tuple[float, Vec2]], now: float) -> list[bool]:
         """Take a sweep and what it heard; for each echo whether it comes from where it was free a moment ago."""
         moving = [self._was_free(pose, point, now) for _, point in echoes]
+        self._sweep += 1
         self._free(ring, pose, now)
         return moving
 
@@ -91,17 +95,18 @@ class Evidence:
         )
 
     def _free(self, ring: Ranges, pose: Pose, now: float) -> None:
-        """What the beams went through; a cell is free when two sweeps in a row say so."""
+        """What the beams went through: free when two sweeps in a row say so, forgotten when `sure` do."""
         rows, columns, away, bearings = self._around(ring, pose)
         count = len(ring.ranges)
         sector = np.rint((bearings - ring.bearings[0]) / (math.tau / count)).astype(np.int64) % count
         through = away < (ring.mount_radius + ring.ranges - self._settings.before)[sector]
         rows, columns = rows[through], columns[through]
-        self._run[rows, columns] += 1
-        again = self._run[rows, columns] >= 2
-        rows, columns = rows[again], columns[again]
-        self._freed[rows, columns] = now
-        self._heard[rows, columns] = NEVER
+        run = np.where(self._last[rows, columns] == self._sweep - 1, self._run[rows, columns], 0) + 1
+        self._run[rows, columns], self._last[rows, columns] = run, self._sweep
+        again = run >= 2
+        self._freed[rows[again], columns[again]] = now
+        sure = run >= self._settings.sure
+        self._heard[rows[sure], columns[sure]] = NEVER
 
     def _around(self, ring: Ranges, pose: Pose) -> tuple[NDArray[np.int64], NDArray[np.int64], Floats, Floats]:
         """Rows and columns of the cells within hearing, their distances and bearings [rad, robot frame]."""

@@ -29,7 +29,10 @@ Memory = Mapping[int, tuple[Spin, float]]
 
 @dataclass(frozen=True, slots=True)
 class NatSettings:
-    """Lengths [m], speeds [m/s], gain [1/s], turn rate [rad/s]; fractions without unit."""
+    """Lengths [m], speeds [m/s], gain [1/s], turn rate [rad/s]; fractions without unit.
+
+    minds [rad]: echoes within so much of the heading slow the robot down.
+    """
 
     robot_width: float = 0.7
     clearance: float = 0.25
@@ -45,6 +48,7 @@ class NatSettings:
     least_speed: float = 0.2
     steering_gain: float = 1.5
     max_turn_rate: float = 0.8
+    minds: float = math.pi
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,8 @@ Edge = tuple[float, float]
 @dataclass(frozen=True, slots=True)
 class TrackSettings:
     """alpha, beta: gains of the edges; link, gate [m]: within a cluster, and to its track; patience [s] without echo;
-    moving, fastest [m/s]: slower is standing, faster is not believed; sightings: sweeps until a velocity is believed."""
+    moving, fastest [m/s]: slower is standing, faster is not believed; sightings: sweeps until a velocity is believed;
+    gone [m]: so far its middle must have gone."""
 
     alpha: float = 0.6
     beta: float = 0.3
@@ -32,16 +33,21 @@ class TrackSettings:
     moving: float = 0.3
     fastest: float = 3.0
     sightings: int = 3
+    gone: float = 0.5
 
 
 @dataclass(frozen=True, slots=True)
 class Track:
-    """A moving thing: its echoes at `stamp` [s], the edges of the box about them, and in how many sweeps it was heard."""
+    """A moving thing: its echoes at `stamp` [s], the edges of the box about them, and in how many sweeps it was heard.
+
+    first: the middle of the box when it was met.
+    """
 
     ident: int
     stamp: float
     points: tuple[Vec2, ...]
     edges: tuple[Edge, Edge, Edge, Edge]
+    first: Vec2
     sightings: int = 1
 
     @property
@@ -49,6 +55,13 @@ class Track:
         """[m/s]"""
         low_x, high_x, low_y, high_y = (edge[1] for edge in self.edges)
         return max(low_x, high_x, key=abs), max(low_y, high_y, key=abs)
+
+    @property
+    def gone(self) -> float:
+        """How far the middle has gone along its velocity [m]."""
+        (vx, vy), speed = self.velocity, self.speed
+        x, y = (self.edges[0][0] + self.edges[1][0]) / 2, (self.edges[2][0] + self.edges[3][0]) / 2
+        return ((x - self.first[0]) * vx + (y - self.first[1]) * vy) / speed if speed > 0.0 else 0.0
 
     @property
     def speed(self) -> float:
@@ -65,7 +78,11 @@ class Tracks:
 
     def moving(self, settings: TrackSettings) -> tuple[Track, ...]:
         """Those that are known to move."""
-        return tuple(t for t in self.tracks if t.sightings >= settings.sightings and t.speed >= settings.moving)
+        return tuple(
+            t
+            for t in self.tracks
+            if t.sightings >= settings.sightings and t.speed >= settings.moving and t.gone >= settings.gone
+        )
 
 
 def follow(tracks: Tracks, points: Sequence[Vec2], now: float, settings: TrackSettings) -> Tracks:
@@ -105,7 +122,7 @@ def _box(points: Sequence[Vec2]) -> tuple[float, float, float, float]:
 
 def _new(ident: int, points: Sequence[Vec2], now: float) -> Track:
     a, b, c, d = _box(points)
-    return Track(ident, now, tuple(points), ((a, 0.0), (b, 0.0), (c, 0.0), (d, 0.0)))
+    return Track(ident, now, tuple(points), ((a, 0.0), (b, 0.0), (c, 0.0), (d, 0.0)), ((a + b) / 2, (c + d) / 2))
 
 
 def _nearest(tracks: Sequence[Track], points: Sequence[Vec2], now: float, settings: TrackSettings) -> int | None:
@@ -124,7 +141,7 @@ def _updated(track: Track, points: Sequence[Vec2], now: float, settings: TrackSe
     if dt <= 0.0:
         return track
     a, b, c, d = (_filtered(edge, seen, dt, settings) for edge, seen in zip(track.edges, _box(points), strict=True))
-    return Track(track.ident, now, tuple(points), (a, b, c, d), track.sightings + 1)
+    return Track(track.ident, now, tuple(points), (a, b, c, d), track.first, track.sightings + 1)
 
 
 def _filtered(edge: Edge, seen: float, dt: float, settings: TrackSettings) -> Edge:

@@ -44,16 +44,17 @@ things:
 """
 
 CANYON = """\
-# A canyon of {width:g} x {depth:g} m, open towards the robot, with the goal two metres behind its back wall.
+# A canyon of {width:g} x {depth:g} m, open towards the robot, with the goal behind its back wall, 16 degrees to the left.
+# The seed turns the robot, and with it the goal that it is given, by 4 degrees to either side.
 name: canyon {width:g} x {depth:g}
 bounds: [-4, -7, 10, 7]
 time_limit: 10 min
 
 robot:
   start: [0, 0]
-  heading: {{between: [-8 deg, 8 deg]}}
+  heading: {{between: [12 deg, 20 deg]}}
 
-goal: {{at: [7.55, 0], within: 1.4}}
+goal: {{at: [7.26, 2.08], within: 0.9}}
 
 things:
   - {{kind: wall, from: [{back}, {low}], to: [{back}, {high}]}}
