@@ -27,35 +27,39 @@ class CrossingSettings:
     max_slope_error: float = 0.5
 
 
+TOO_FEW, NO_CHANGE = "too few readings", "no plus-to-minus change"
 DISAGREE = "readings disagree"
 """The reason when a beacon is there and rocks too much."""
 
 
 @dataclass(frozen=True, slots=True)
 class Crossing:
-    """bearing [rad] in the frame of the axes, NaN when there is none; reason: why there is none, "" otherwise."""
+    """bearing [rad] in the frame of the axes, NaN when there is none; reason: why there is none, "" otherwise.
+
+    error [rad]: standard error of the bearing, NaN where there were too few readings to tell.
+    """
 
     bearing: float
     reason: str = ""
+    error: float = math.nan
 
 
 def crossing(fixations: Sequence[tuple[float, float]], settings: CrossingSettings) -> Crossing:
     """The zero of a line through (axis [rad], offset [rad]); axes unwrapped, offsets of the beacon left positive."""
     if len(fixations) < 2 * settings.side:
-        return Crossing(math.nan, "too few readings")
+        return Crossing(math.nan, TOO_FEW)
     axes, offsets = np.array(fixations, dtype=np.float64).T
     spread_of_axes = float(np.ptp(axes))
     if not np.isfinite(offsets).all() or spread_of_axes == 0.0:
-        return Crossing(math.nan, "too few readings")
+        return Crossing(math.nan, TOO_FEW)
     slope, intercept = map(float, np.polyfit(axes - axes.mean(), offsets, 1))
     if abs(slope + 1.0) > settings.max_slope_error:
-        return Crossing(math.nan, "no plus-to-minus change")
+        return Crossing(math.nan, NO_CHANGE)
     zero = float(axes.mean()) - intercept / slope
     before = int(np.count_nonzero((axes < zero) & (offsets > 0)))
     after = int(np.count_nonzero((axes > zero) & (offsets < 0)))
     if min(before, after) < settings.side:
-        return Crossing(math.nan, "no plus-to-minus change")
+        return Crossing(math.nan, NO_CHANGE)
     residuals = offsets - intercept - slope * (axes - axes.mean())
-    if float(residuals.std()) > settings.max_error * math.sqrt(len(fixations)):
-        return Crossing(math.nan, DISAGREE)
-    return Crossing(zero)
+    error = float(residuals.std()) / math.sqrt(len(fixations))
+    return Crossing(math.nan, DISAGREE, error) if error > settings.max_error else Crossing(zero, "", error)

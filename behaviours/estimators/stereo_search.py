@@ -3,6 +3,9 @@
 Takes: stereo fixations, the reports of the two competences that move the head, and the direction to search in. Gives:
 how far the search is, where to look next, the range once found. Leaves alone: moving the head; what the range is for.
 A search whose competences lose their turn is dropped: the next one starts from scratch.
+
+With `from_horizon` it looks along the ground from far to near and passes over what does not fit the strength of the
+beacon, so that what stands between robot and donor is not taken for the donor.
 """
 
 from __future__ import annotations
@@ -24,6 +27,8 @@ class StereoSettings:
     """camera_height [m]: until a reading tells it; angle_tolerance [rad]; times [s]; looks, unsticks: counts.
 
     A discontinuity is believed when `looks` fixations at one place agree on it: what passes by is not an object.
+    from_horizon: look from far to near, for what lies within `reach_slack` [m] and `reach_share` of the distance that
+    the beacon's signal tells.
     """
 
     ground: GroundSettings = field(default_factory=GroundSettings)
@@ -33,26 +38,41 @@ class StereoSettings:
     fixation_timeout: float = 20.0
     unsticks: int = 3
     unstick_time: float = 3.0
+    reach_slack: float = 0.5
+    reach_share: float = 0.08
+    from_horizon: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """ground [m]: distance to what was found, bearing [rad] of the ray, place of the robot; in the odometry frame."""
+    """ground [m]: distance to what was found, bearing [rad] of the ray, place of the robot; in the odometry frame.
+
+    envelope [m]: how far the distance may be off by the errors that are accounted for.
+    """
 
     place: Pose
     bearing: float
     ground: float
+    envelope: float = 0.0
 
 
 class StereoSearch:
-    """One search along the ground. bearing: where to search [rad, odometry frame], None: straight ahead."""
+    """One search along the ground. bearing: where to search [rad, odometry frame], None: straight ahead.
 
-    def __init__(self, settings: StereoSettings, bearing: Callable[[], float | None]) -> None:
+    reach: how far [m] the beacon's middle is by its signal, None or NaN where that is not known.
+    """
+
+    def __init__(
+        self,
+        settings: StereoSettings,
+        bearing: Callable[[], float | None],
+        reach: Callable[[], float | None] = lambda: None,
+    ) -> None:
         self.settings = settings
         self.phase: Phase = "idle"
         self.found: Found | None = None
         self.reason = ""
-        self._bearing = bearing
+        self._bearing, self._reach = bearing, reach
         self._height = settings.camera_height
         self._fixations: tuple[Head, ...] = ()
         self._restart(0.0)
@@ -87,29 +107,55 @@ class StereoSearch:
         """Whether it has come to its end without a range within the cut-off."""
         return self.phase == "done" and self.found is None
 
+    def needs_help(self) -> bool:
+        """Whether the head has been freed in vain, so that only a person can help."""
+        return self._unsticks >= max(3, self.settings.unsticks) and self.phase != "idle"
+
+    def range_found(self) -> float:
+        """Distance [m] of what was found; 0 where nothing is."""
+        return 0.0 if self.found is None else self.found.ground
+
+    def envelope(self) -> float:
+        """How far [m] that distance may be off; 0 where nothing is found."""
+        return 0.0 if self.found is None else self.found.envelope
+
     def first_look(self, reading: Reading) -> Head:
         """Where a search begins."""
         return self._plan(reading)[0]
 
     def look(self, reading: Reading) -> Head:
-        """Where to look now: level while the head is being freed."""
+        """Where to look now; while the head is being freed level, and from the second time on straight ahead."""
         wanted = self._fixations[min(self._index, len(self._fixations) - 1)]
-        return Head(wanted.pan, 0.0) if reading.stamp < self._freeing_until else wanted
+        if reading.stamp >= self._freeing_until:
+            return wanted
+        return Head(wanted.pan if self._unsticks <= 1 else 0.0, 0.0)
 
     def progress(self) -> dict[str, object]:
-        """For reports."""
-        return {"fixation": self._index, "of": len(self._fixations), "unsticks": self._unsticks}
+        """For reports: the envelope [m] is that of an object where the ray meets the ground."""
+        told: dict[str, object] = {
+            "fixation": self._index,
+            "of": len(self._fixations),
+            "unsticks": self._unsticks,
+        }
+        if self._index < len(self._fixations):
+            tilted = self._fixations[self._index].tilt
+            slant = self._height / math.sin(tilted)
+            told["ground"] = round(slant * math.cos(tilted), 2)
+            told["envelope"] = round(self._envelope_at(slant, tilted), 2)
+        return told | ({"asks": "a helpful tap at the head"} if self.needs_help() else {})
+
+    def last_result(self) -> dict[str, object]:
+        """How the search before came to its end, for the report of the next."""
+        return {"failed": self.reason} if self.is_no_good() else {}
 
     def _plan(self, reading: Reading) -> tuple[Head, ...]:
-        """Every fixation, near to far."""
+        """Every fixation, near to far, or from the horizon down."""
         bearing = self._bearing()
         ahead = 0.0 if bearing is None else wrap(bearing - reading.odometry.pose.theta)
         offsets = pans(self.settings.ground)
-        return tuple(
-            Head(ahead + offset, tilt(self._height, at))
-            for at in ground_points(self._height, self.settings.ground)
-            for offset in offsets
-        )
+        points = ground_points(self._height, self.settings.ground)
+        along = points[::-1] if self.settings.from_horizon else points
+        return tuple(Head(ahead + offset, tilt(self._height, at)) for at in along for offset in offsets)
 
     def _restart(self, stamp: float) -> None:
         self._index = 0
@@ -149,14 +195,31 @@ class StereoSearch:
             self._advance(reading)
             return
         self._seen = (*self._seen, stereo.range)
-        if len(self._seen) >= self.settings.looks:
-            self._finish(stereo, sum(self._seen) / len(self._seen) * math.cos(stereo.tilt), reading.odometry.pose)
+        if len(self._seen) < self.settings.looks:
+            return
+        ground = sum(self._seen) / len(self._seen) * math.cos(stereo.tilt)
+        if self.settings.from_horizon and not self._fits(ground):
+            self._advance(reading)
+        else:
+            self._finish(stereo, ground, reading.odometry.pose)
+
+    def _fits(self, ground: float) -> bool:
+        """Whether something at this distance [m] may carry the beacon."""
+        s, reach = self.settings, self._reach()
+        if reach is None or math.isnan(reach):
+            return ground <= s.ground.cut_off
+        return abs(reach - ground) <= s.reach_slack + s.reach_share * reach
+
+    def _envelope_at(self, slant: float, tilted: float) -> float:
+        ground = self.settings.ground
+        return ground.error_factor * sigma(slant, ground) * math.cos(tilted)
 
     def _finish(self, stereo: StereoReading, ground: float, pose: Pose) -> None:
         self.phase = "done"
         self.reason = "" if ground <= self.settings.ground.cut_off else "beyond the cut-off"
         if not self.reason:
-            self.found = Found(pose, wrap(pose.theta + stereo.pan), ground)
+            envelope = self._envelope_at(ground / math.cos(stereo.tilt), stereo.tilt)
+            self.found = Found(pose, wrap(pose.theta + stereo.pan), ground, envelope)
 
     def _advance(self, reading: Reading) -> None:
         self._index += 1
