@@ -30,7 +30,7 @@ from behaviours.cores.evidence import EvidenceSettings
 from behaviours.cores.ground import GroundSettings
 from behaviours.cores.nat import NatSettings
 from behaviours.cores.runaway import RunawaySettings
-from behaviours.cores.sectors import LidarRing, RingOf, skirt, waist
+from behaviours.cores.sectors import FINE, LidarRing, RingOf, skirt, waist
 from behaviours.estimators import ir_search, stereo_search
 from behaviours.estimators.beacons import Beacons, BeaconSettings
 from behaviours.estimators.danger import Danger
@@ -278,8 +278,11 @@ def _obstacles(values: Values, nat: NatSettings, ring_of: RingOf) -> Obstacles:
         tracking=_is_on("tracking", values),
         evidence=_settings(EvidenceSettings(), _EVIDENCE, values),
     )
+    circles = _settings(CircleSettings(), _CIRCLES, values)
+    if isinstance(ring_of, LidarRing) and (perception.memory or perception.tracking):
+        circles, ring_of = replace(circles, half_cone=0.0), LidarRing(nat.robot_width / 2, FINE)
     return Obstacles(
-        _settings(CircleSettings(), _CIRCLES, values),
+        circles,
         nat,
         _settings(DeadlockSettings(), _DEADLOCK, values),
         NAVIGATE,

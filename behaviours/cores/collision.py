@@ -36,41 +36,36 @@ def gate(
     moving: Sequence[Moving],
     settings: GateSettings,
 ) -> float:
-    """The first of the speeds v, v/2, 0, -max/2, -max [m/s] that meets nothing, else the one that meets it last.
+    """The first of the speeds v, v/2, 0, -max/2, -max [m/s] that meets nothing, else the one that keeps off farthest.
 
     speed [m/s]: what is wanted; radius [m] of the robot.
     """
     if not moving:
         return speed
-    best, latest = speed, -1.0
+    best, widest = speed, -math.inf
     for choice in (speed, speed / 2, 0.0, -max_speed / 2, -max_speed):
-        meets = time_to_collision(robot, choice, radius, moving, settings)
-        if meets > settings.horizon:
+        gap = least_gap(robot, choice, radius, moving, settings)
+        if gap >= settings.keep_off:
             return choice
-        if meets > latest + settings.step / 2:
-            best, latest = choice, meets
+        if gap > widest + 0.01:
+            best, widest = choice, gap
     return best
 
 
-def time_to_collision(
-    robot: Pose, speed: float, radius: float, moving: Sequence[Moving], settings: GateSettings
-) -> float:
-    """When [s] the robot that drives so comes too near to a point; infinite if it does not within the horizon.
+def least_gap(robot: Pose, speed: float, radius: float, moving: Sequence[Moving], settings: GateSettings) -> float:
+    """How near [m] a point comes to the hull within the horizon, of those moments in which it comes nearer.
 
-    It drives straight: turn rates of navigation are short-lived. What comes nearer only because of the robot's being
-    near already does not count while the gap grows.
+    The robot is taken to go straight on. What is near already and goes away does not count: infinite.
     """
     times = np.arange(1, round(settings.horizon / settings.step) + 1) * settings.step
     x, y = straight(robot, speed, times)
-    points = np.array([point for point, _ in moving])
-    speeds = np.array([speed for _, speed in moving])
+    points, speeds = np.array([point for point, _ in moving]), np.array([velocity for _, velocity in moving])
     dx = x[:, None] - points[:, 0] - times[:, None] * speeds[:, 0]
     dy = y[:, None] - points[:, 1] - times[:, None] * speeds[:, 1]
     gaps = np.hypot(dx, dy).min(axis=1) - radius
     now = float(np.hypot(robot.x - points[:, 0], robot.y - points[:, 1]).min()) - radius
-    falling = np.diff(gaps, prepend=now) < 0.0
-    met = np.flatnonzero((gaps < settings.keep_off) & falling)
-    return float(times[met[0]]) if len(met) else math.inf
+    nearer = np.diff(gaps, prepend=now) < 0.0
+    return float(gaps[nearer].min(initial=math.inf))
 
 
 def straight(robot: Pose, speed: float, times: Floats) -> tuple[Floats, Floats]:

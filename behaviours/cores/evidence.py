@@ -23,6 +23,8 @@ SIDE = 256
 FIRST_IDENT = 1_000_000
 """The names of circles from the grid begin here."""
 NEVER = -1e9
+FARTHEST = 12.0
+"""Beams free nothing beyond [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +61,7 @@ class Evidence:
 
     def sweep(self, ring: Ranges, pose: Pose, echoes: Sequence[tuple[float, Vec2]], now: float) -> list[bool]:
         """Take a sweep and what it heard; for each echo whether it comes from where it was free a moment ago."""
-        moving = [self._was_free(pose, point, now) for _, point in echoes]
+        moving = self._were_free(ring, pose, [point for _, point in echoes], now)
         self._sweep += 1
         self._free(ring, pose, now)
         return moving
@@ -85,14 +87,22 @@ class Evidence:
         cell = self._settings.cell
         return math.floor(x / cell) % SIDE, math.floor(y / cell) % SIDE
 
-    def _was_free(self, pose: Pose, point: Vec2, now: float) -> bool:
-        """The whole arc on which the echo may lie was free."""
-        away, axis = math.hypot(point[0] - pose.x, point[1] - pose.y), math.atan2(point[1] - pose.y, point[0] - pose.x)
-        arc = (axis + turn for turn in (-0.15, 0.0, 0.15))
-        since = now - self._settings.was_free
-        return all(
-            self._freed[self._place(pose.x + away * math.cos(a), pose.y + away * math.sin(a))] > since for a in arc
-        )
+    def _were_free(self, ring: Ranges, pose: Pose, points: Sequence[Vec2], now: float) -> list[bool]:
+        """For each point whether the whole arc on which the echo may lie was free."""
+        if not points:
+            return []
+        x, y = np.array(points).T
+        away, axis = np.hypot(x - pose.x, y - pose.y), np.arctan2(y - pose.y, x - pose.x)
+        half, since = math.pi / len(ring.ranges), now - self._settings.was_free
+        free = np.ones(len(points), dtype=bool)
+        for turn in (-half, 0.0, half):
+            rows, columns = self._places(pose.x + away * np.cos(axis + turn), pose.y + away * np.sin(axis + turn))
+            free &= self._freed[rows, columns] > since
+        return [bool(one) for one in free.tolist()]
+
+    def _places(self, x: Floats, y: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        cell = self._settings.cell
+        return np.floor(x / cell).astype(np.int64) % SIDE, np.floor(y / cell).astype(np.int64) % SIDE
 
     def _free(self, ring: Ranges, pose: Pose, now: float) -> None:
         """What the beams went through: free when two sweeps in a row say so, forgotten when `sure` do."""
@@ -110,7 +120,7 @@ class Evidence:
 
     def _around(self, ring: Ranges, pose: Pose) -> tuple[NDArray[np.int64], NDArray[np.int64], Floats, Floats]:
         """Rows and columns of the cells within hearing, their distances and bearings [rad, robot frame]."""
-        cell, far = self._settings.cell, min(ring.max_range, self._settings.reach) + ring.mount_radius
+        cell, far = self._settings.cell, min(ring.max_range, FARTHEST) + ring.mount_radius
         if self._window is None or self._window[0] != far:
             n = math.ceil(far / cell)
             i, j = np.mgrid[-n : n + 1, -n : n + 1]

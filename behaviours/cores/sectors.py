@@ -16,6 +16,9 @@ from behaviours.interface import Ranges, Reading, Scan
 RingOf = Callable[[Reading], Ranges | None]
 """The ring that a reading holds, if it holds one."""
 SECTORS = 24
+"""As many as there are sonars at the waist."""
+FINE = 120
+"""For what moves and what is remembered the sectors of a lidar may be narrower."""
 
 
 def waist(reading: Reading) -> Ranges | None:
@@ -50,10 +53,10 @@ def sectors_of(scan: Scan, hull: float, count: int = SECTORS) -> Ranges:
 
 
 class LidarRing:
-    """The sectors of the lidar of a reading; each scan is reduced once."""
+    """The sectors of the lidar of a reading; each scan is reduced once. count: of sectors."""
 
-    def __init__(self, hull: float) -> None:
-        self._hull = hull
+    def __init__(self, hull: float, count: int = SECTORS) -> None:
+        self._hull, self._count = hull, count
         self._last: Ranges | None = None
 
     def __call__(self, reading: Reading) -> Ranges | None:
@@ -62,7 +65,7 @@ class LidarRing:
             return None
         last = self._last
         if last is None or last.stamp != scan.stamp:
-            last = sectors_of(scan, self._hull)
+            last = sectors_of(scan, self._hull, self._count)
         elif last.fresh != scan.fresh:
             last = Ranges(last.stamp, scan.fresh, last.bearings, last.ranges, last.max_range, last.mount_radius)
         self._last = last

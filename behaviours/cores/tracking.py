@@ -23,12 +23,14 @@ Edge = tuple[float, float]
 class TrackSettings:
     """alpha, beta: gains of the edges; link, gate [m]: within a cluster, and to its track; patience [s] without echo;
     moving, fastest [m/s]: slower is standing, faster is not believed; sightings: sweeps until a velocity is believed;
-    gone [m]: so far its middle must have gone."""
+    gone [m]: so far its middle must have gone; jump [m]: an edge of a known track that is off by more than this has come
+    into view or gone out of it, and says nothing of the velocity."""
 
     alpha: float = 0.6
     beta: float = 0.3
-    link: float = 1.2
-    gate: float = 1.0
+    link: float = 1.5
+    gate: float = 1.2
+    jump: float = 0.4
     patience: float = 0.7
     moving: float = 0.3
     fastest: float = 3.0
@@ -52,9 +54,10 @@ class Track:
 
     @property
     def velocity(self) -> Vec2:
-        """[m/s]"""
+        """[m/s]: of the faster edge along the axis on which it moves more, of both edges along the other."""
         low_x, high_x, low_y, high_y = (edge[1] for edge in self.edges)
-        return max(low_x, high_x, key=abs), max(low_y, high_y, key=abs)
+        x, y = max(low_x, high_x, key=abs), max(low_y, high_y, key=abs)
+        return (x, (low_y + high_y) / 2) if abs(x) >= abs(y) else ((low_x + high_x) / 2, y)
 
     @property
     def gone(self) -> float:
@@ -140,12 +143,17 @@ def _updated(track: Track, points: Sequence[Vec2], now: float, settings: TrackSe
     dt = now - track.stamp
     if dt <= 0.0:
         return track
-    a, b, c, d = (_filtered(edge, seen, dt, settings) for edge, seen in zip(track.edges, _box(points), strict=True))
+    known = track.sightings >= settings.sightings
+    a, b, c, d = (
+        _filtered(edge, seen, dt, known, settings) for edge, seen in zip(track.edges, _box(points), strict=True)
+    )
     return Track(track.ident, now, tuple(points), (a, b, c, d), track.first, track.sightings + 1)
 
 
-def _filtered(edge: Edge, seen: float, dt: float, settings: TrackSettings) -> Edge:
+def _filtered(edge: Edge, seen: float, dt: float, known: bool, settings: TrackSettings) -> Edge:
     place, speed = edge[0] + edge[1] * dt, edge[1]
     miss = seen - place
+    if known and abs(miss) > settings.jump:
+        return seen, speed
     limit = settings.fastest
     return place + settings.alpha * miss, min(limit, max(-limit, speed + settings.beta * miss / dt))

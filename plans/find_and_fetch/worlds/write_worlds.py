@@ -31,6 +31,10 @@ time_limit: 3 min
 robot:
   start: [0, 0]
   heading: {heading:.6f} # towards the goal
+  sensors:
+    - {{kind: sonar}}
+    - {{kind: odometry}}
+    - {{kind: lidar, height: 0.6, beams: 360, max_range: 10, sd: 0.02, period: 0.1}} # for plans that use it
 
 goal: {{at: [{goal[0]}, {goal[1]}], within: 0.5}}
 
@@ -94,8 +98,8 @@ def canyon(width: float, depth: float) -> str:
 def main() -> None:
     """Write them."""
     here = Path(__file__).parent
-    for speed in (0.6, 0.8, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.2):
-        (here / f"car_{speed:.1f}.yaml").write_text(crossing(speed, 16.0), encoding="utf-8")
+    for speed in (0.6, 0.8, 1.0, 1.2, 1.4, 1.5, 1.6, 1.8, 2.0, 2.2):
+        (here / f"car_{speed:.1f}.yaml").write_text(crossing(speed, 11.0), encoding="utf-8")
     for width, depth in ((3, 2), (4, 3), (5, 4), (6, 5)):
         (here / f"canyon_{width}x{depth}.yaml").write_text(canyon(width, depth), encoding="utf-8")
 
