@@ -56,10 +56,11 @@ class Natigate:
         self._settings = settings
         self._gaze_settings = gaze
         self._pan: float | None = None
+        self._given_way = math.inf
         self._told: tuple[NatPlan, Mapping[str, object]] | None = None
 
     def start(self, reading: Reading, channels: Channels) -> None:
-        self._pan = None
+        self._pan, self._given_way = None, math.inf
 
     def step(self, reading: Reading, channels: Channels) -> tuple[Command, Report]:
         goal = channels.get("goal")
@@ -79,11 +80,10 @@ class Natigate:
         """The speed that does not meet what moves; never backwards into what stands."""
         assert self._traffic is not None
         s = self._settings
-        chosen = gate(pose, speed, s.max_speed, s.robot_width / 2, moving, self._traffic.gate)
+        gates = self._traffic.gate
+        chosen = gate(pose, speed, s.max_speed, s.robot_width / 2, moving, gates, self._given_way)
+        self._given_way = chosen if chosen < speed else math.inf
         return 0.0 if chosen < 0.0 and ring is not None and behind(ring) < s.clearance + s.stop_distance else chosen
-
-    def stop(self) -> None:
-        self._pan = None
 
     def _look_at(self, pose: Pose, goal: Pose) -> Head:
         s = self._gaze_settings

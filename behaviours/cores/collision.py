@@ -17,11 +17,15 @@ from behaviours.interface import Floats, Pose, Vec2, wrap
 
 @dataclass(frozen=True, slots=True)
 class GateSettings:
-    """horizon [s]: collisions later do not count; keep_off [m]: hulls nearer than this count as one; step [s]."""
+    """horizon [s]: collisions later do not count; keep_off [m]: hulls nearer than this count as one; step [s].
+
+    hysteresis [m]: a robot that gives way drives faster again only where the gap is wider by so much.
+    """
 
     horizon: float = 6.0
     keep_off: float = 0.4
     step: float = 0.2
+    hysteresis: float = 0.3
 
 
 Moving = tuple[Vec2, Vec2]
@@ -35,17 +39,18 @@ def gate(
     radius: float,
     moving: Sequence[Moving],
     settings: GateSettings,
+    before: float = math.inf,
 ) -> float:
     """The first of the speeds v, v/2, 0, -max/2, -max [m/s] that meets nothing, else the one that keeps off farthest.
 
-    speed [m/s]: what is wanted; radius [m] of the robot.
+    speed [m/s]: what is wanted; radius [m] of the robot; before: the speed chosen last, infinite if it did not give way.
     """
     if not moving:
         return speed
     best, widest = speed, -math.inf
     for choice in (speed, speed / 2, 0.0, -max_speed / 2, -max_speed):
         gap = least_gap(robot, choice, radius, moving, settings)
-        if gap >= settings.keep_off:
+        if gap >= settings.keep_off + (settings.hysteresis if choice > before else 0.0):
             return choice
         if gap > widest + 0.01:
             best, widest = choice, gap

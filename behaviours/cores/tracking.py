@@ -21,13 +21,12 @@ Edge = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class TrackSettings:
-    """alpha, beta: gains of the edges; link, gate [m]: within a cluster, and to its track; patience [s] without echo;
+    """settle [s]: time constant of the filters of the edges; link, gate [m]: within a cluster, and to its track; patience [s] without echo;
     moving, fastest [m/s]: slower is standing, faster is not believed; sightings: sweeps until a velocity is believed;
     gone [m]: so far its middle must have gone; jump [m]: an edge of a known track that is off by more than this has come
     into view or gone out of it, and says nothing of the velocity."""
 
-    alpha: float = 0.6
-    beta: float = 0.3
+    settle: float = 0.35
     link: float = 1.5
     gate: float = 1.2
     jump: float = 0.4
@@ -89,19 +88,22 @@ class Tracks:
 
 
 def follow(tracks: Tracks, points: Sequence[Vec2], now: float, settings: TrackSettings) -> Tracks:
-    """The tracks after a sweep with these echoes at stamp now [s]."""
-    free = list(tracks.tracks)
-    next_ident = tracks.next_ident
+    """The tracks after a sweep with these echoes at stamp now [s]; several clusters may go on one track."""
+    taken: list[list[Vec2]] = [[] for _ in tracks.tracks]
     after = []
     for cluster in cluster_of(points, settings.link):
-        at = _nearest(free, cluster, now, settings)
+        at = _nearest(tracks.tracks, cluster, now, settings)
         if at is None:
-            after.append(_new(next_ident, cluster, now))
-            next_ident += 1
+            after.append(_new(tracks.next_ident + len(after), cluster, now))
         else:
-            after.append(_updated(free.pop(at), cluster, now, settings))
-    after += [track for track in free if now - track.stamp <= settings.patience]
-    return Tracks(tuple(after), next_ident)
+            taken[at] += cluster
+    next_ident = tracks.next_ident + len(after)
+    for track, seen in zip(tracks.tracks, taken, strict=True):
+        if seen:
+            after.append(_updated(track, seen, now, settings))
+        elif now - track.stamp <= settings.patience:
+            after.append(track)
+    return Tracks(tuple(sorted(after, key=lambda track: track.ident)), next_ident)
 
 
 def cluster_of(points: Sequence[Vec2], link: float) -> list[list[Vec2]]:
@@ -143,17 +145,23 @@ def _updated(track: Track, points: Sequence[Vec2], now: float, settings: TrackSe
     dt = now - track.stamp
     if dt <= 0.0:
         return track
-    known = track.sightings >= settings.sightings
-    a, b, c, d = (
-        _filtered(edge, seen, dt, known, settings) for edge, seen in zip(track.edges, _box(points), strict=True)
-    )
+    gains = _gains(track.sightings + 1, dt, settings)
+    jump = settings.jump if track.sightings >= settings.sightings else math.inf
+    boxes = zip(track.edges, _box(points), strict=True)
+    a, b, c, d = (_filtered(edge, seen, dt, gains, jump, settings.fastest) for edge, seen in boxes)
     return Track(track.ident, now, tuple(points), (a, b, c, d), track.first, track.sightings + 1)
 
 
-def _filtered(edge: Edge, seen: float, dt: float, known: bool, settings: TrackSettings) -> Edge:
+def _gains(sightings: int, dt: float, settings: TrackSettings) -> tuple[float, float]:
+    """alpha and beta: those of the best line through all sightings, until these are fewer than the filter remembers."""
+    k = sightings
+    alpha = max(1.0 - math.exp(-dt / settings.settle), 2.0 * (2 * k - 1) / (k * (k + 1)))
+    return alpha, 6.0 / (k * (k + 1)) if alpha > 1.0 - math.exp(-dt / settings.settle) else alpha * alpha / (2.0 - alpha)
+
+
+def _filtered(edge: Edge, seen: float, dt: float, gains: tuple[float, float], jump: float, fastest: float) -> Edge:
     place, speed = edge[0] + edge[1] * dt, edge[1]
     miss = seen - place
-    if known and abs(miss) > settings.jump:
+    if abs(miss) > jump:
         return seen, speed
-    limit = settings.fastest
-    return place + settings.alpha * miss, min(limit, max(-limit, speed + settings.beta * miss / dt))
+    return place + gains[0] * miss, min(fastest, max(-fastest, speed + gains[1] * miss / dt))
