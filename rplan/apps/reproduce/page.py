@@ -31,7 +31,7 @@ COLOURS = ("#3478e5", "#b0478f", "#16876f", "#a9720a", "#8457d8", "#8d5a3b", "#5
 BAND, INK = "#dcefe4", "#19202b"
 UNMEASURED = ("row", "preset", "case", "seed", "scenario", "error", "wall")
 MOST_CASES = 8
-"""Cases that have a curve, and a line of the table, each; more are drawn as one."""
+"""Cases that have a curve, and a line of the table, each; more are taken together by kind."""
 
 
 def write(every: Sequence[Result], seeds: int, folder: Path) -> Iterator[Path]:
@@ -69,9 +69,9 @@ def text(paper: str, every: Sequence[Result], seeds: int, drawn: Mapping[str, Se
         f"# {TITLES.get(paper, paper)}, run again\n",
         f"```sh\nrplan reproduce {paper} --seeds {seeds} --write docs\n```\n",
         f"{len(counts)} figures of the paper: {counts.count('met')} met, {counts.count('close')} close (within a "
-        f"tenth), {counts.count('missed')} missed. Spreads are median (least to most, n = episodes). Seeds are fixed, so the "
-        f"command gives the same figures again; [{paper}.csv]({paper}.csv) has a line for every episode. How a row is "
-        "run and judged stands in `rplan/apps/reproduce/rows/`, and [the how-to](../how-to/reproduce_a_paper.md) says "
+        f"tenth), {counts.count('missed')} missed. Spreads are median (least to most, n = episodes). Seeds are fixed: "
+        f"the command gives the same figures again; [{paper}.csv]({paper}.csv) has a line for every episode. How "
+        "a row is run and judged stands in `rplan/apps/reproduce/rows/`, and [the how-to](../how-to/reproduce_a_paper.md) says "
         "how to look at one run or add a row.\n",
         _overview(every),
     ]
@@ -102,6 +102,7 @@ def _anchor(result: Result) -> str:
 def _section(name: str, some: Sequence[Result], drawn: Mapping[str, Sequence[tuple[str, str]]]) -> str:
     row = some[0].asked.row
     parts = [f"## {_heading(some[0])}\n", f"{row.set_up}\n", f"> {row.printed}\n"]
+    parts += [f"{row.note}\n"] if row.note else []
     for result in some:
         if result.cases:
             parts.append(f"### {name}, preset {result.asked.preset}\n")
@@ -125,9 +126,7 @@ def _cases(result: Result) -> list[str]:
     if not result.measures:
         return []
     keys = dict.fromkeys(key for one in result.measures for key in one if key not in UNMEASURED)
-    cases = [(case.name, [m for m in result.measures if case_of(m) == case.name]) for case in result.cases]
-    if len(cases) > MOST_CASES:
-        cases = [(f"all {len(cases)} cases", list(result.measures))]
+    cases = _kinds(result)
     lines = [
         "| case | episodes | " + " | ".join(key.replace("_", " ") for key in keys) + " |",
         "| --- | ---: |" + " ---: |" * len(keys),
@@ -219,7 +218,7 @@ def draw_plots(result: Result, plots: Sequence[Plot], path: Path) -> None:
 def _draw_plot(axes: Axes, result: Result, plot: Plot) -> None:
     if plot.band is not None:
         axes.axvspan(*plot.band, color=BAND, lw=0, zorder=0)
-    for k, (name, some) in enumerate(_curves(result)):
+    for k, (name, some) in enumerate(_kinds(result)):
         values = [value * plot.scale for value in numbers(some, plot.key)]
         if values:
             axes.ecdf(values, color=COLOURS[k % len(COLOURS)], lw=1.8, label=f"{name} ({len(values)})")
@@ -228,7 +227,12 @@ def _draw_plot(axes: Axes, result: Result, plot: Plot) -> None:
     axes.legend(fontsize=7.5, frameon=False, loc="lower right", labelcolor=INK)
 
 
-def _curves(result: Result) -> list[tuple[str, list[Measures]]]:
-    if len(result.cases) > MOST_CASES:
-        return [("all", list(result.measures))]
-    return [(case.name, [m for m in result.measures if case_of(m) == case.name]) for case in result.cases]
+def _kinds(result: Result) -> list[tuple[str, list[Measures]]]:
+    """The episodes case by case; where there are many cases, those with the same words before the colon together."""
+    many = len(result.cases) > MOST_CASES
+    kinds = dict.fromkeys(_kind(case.name, many) for case in result.cases)
+    return [(kind, [m for m in result.measures if _kind(case_of(m), many) == kind]) for kind in kinds]
+
+
+def _kind(case: str, many: bool) -> str:
+    return case.split(":")[0] if many else case

@@ -7,7 +7,7 @@ Takes: nothing. Gives: frozen values. Leaves alone: which experiments there are 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Literal
 
 from behaviours.interface import Command, Pose, Reading, Report
@@ -92,7 +92,7 @@ class Row:
 
     set_up: what is run; printed: what the paper says; presets: those that it is judged by, unless others are asked for.
     cases: for a number of seeds; none where nothing is driven. measure: of one episode. judge: of all
-    episodes of one preset that ran. plots: of measures, over all cases.
+    episodes of one preset that ran. plots: of measures, over all cases. note: what agreement is worth.
     """
 
     name: str
@@ -104,4 +104,5 @@ class Row:
     measure: Callable[[Seen], Measures]
     judge: Callable[[Preset, Sequence[Measures]], tuple[Finding, ...]]
     presets: tuple[Preset, ...] = ("paper",)
-    plots: tuple[Plot, ...] = field(default=())
+    plots: tuple[Plot, ...] = ()
+    note: str = ""

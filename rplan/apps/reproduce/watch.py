@@ -6,9 +6,10 @@ a row makes of the answers.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import groupby
+from typing import Any
 
 from rplan.apps.libraries import Catalogue
 from rplan.apps.reproduce.row import Moment, Seen
@@ -21,6 +22,7 @@ from sim.things.thing import Thing
 
 ACTION = "action"
 FLEEING = "(move-away-from-danger)"
+NAVIGATE = "move-according-to-NaT-plan"
 MOVING = 0.01  # [m/s] above which the robot is in motion
 
 
@@ -94,6 +96,12 @@ def episodes_of(moments: Sequence[Moment], action: str, apart: float = 0.0) -> l
 def starts_of(moments: Sequence[Moment], competence: str) -> list[float]:
     """When [s] a competence began."""
     return [begin for begin, _ in episodes_of(moments, f"({competence})")]
+
+
+def described(moment: Moment, competence: str) -> Mapping[str, Any]:
+    """What a competence reported of its step; empty where it had no turn."""
+    report = moment.reports.get(competence)
+    return {} if report is None else report.details
 
 
 def share_in_motion(moments: Sequence[Moment]) -> float:

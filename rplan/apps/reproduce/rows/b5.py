@@ -62,7 +62,8 @@ ROW = Row(
     paper="find-and-fetch",
     title="A trashcan rolled at the robot",
     set_up=(
-        "2.5 m from home a trashcan is rolled to 10 cm from the hull, from four sides; two to four obstacles stand about."
+        "2.5 m from home a trashcan is rolled to 10 cm from the hull, from four sides; two to four obstacles stand "
+        "about."
     ),
     printed=(
         "“The runaway behavior was activated only once due to the fact that we deliberately rolled a trashcan within a "
