@@ -550,6 +550,7 @@ _STATION = _parameters(
 _FETCH_PRESET = _search_preset("`paper`, or `modern`, which turns `several` and `faint` on.")
 _SEVERAL = _search_switch("several", "Donors are told apart by their beacons, and served one after the other.")
 _FAINT = _search_switch("faint", "Signals below the reader's threshold tell where to listen next.")
+_HOME = Parameter("home-patience", "number", "s", 20.0, "With several: a place at home is left after waiting so long.")
 _ROUTE = Parameter("route", "symbol", "", "chance", "Listen next by `chance` to hear, or along a `spiral`.")
 
 
@@ -563,7 +564,8 @@ def _build_find_and_fetch(values: Values, workshop: Workshop) -> Offer:
     stereo = workshop.share(StereoSearch, lambda: _share_stereo(workshop, {}))
     goal = workshop.share(NavigationGoal, lambda: NavigationGoal(ArrivalSettings()))
     donor = workshop.share(DonorMemory, lambda: DonorMemory(settings, ir, stereo, goal))
-    home, latest = workshop.share(Home, Home), workshop.share(Latest, Latest)
+    patience = float(values.get(_HOME.name, _HOME.default)) if several else math.inf
+    home, latest = workshop.share(Home, lambda: Home(patience)), workshop.share(Latest, Latest)
     beacons = workshop.share(Beacons, lambda: Beacons(hearing))
     roam = workshop.share(Roaming, lambda: Roaming(roaming, ir, donor, beacons))
     return Offer(
@@ -574,7 +576,7 @@ def _build_find_and_fetch(values: Values, workshop: Workshop) -> Offer:
             "we-already-have-the-widget": latest.object_on_board,
         },
         values={
-            "the-robots-home-position": lambda channels: home.pose,
+            "the-robots-home-position": lambda channels: home.place,
             "set-goal-as-the-donors-location": lambda channels: donor.docking_pose(),
             "remember-the-current-goal-if-any": _current_goal,
             "where-to-listen-next": lambda channels: roam.place,
@@ -593,7 +595,11 @@ FIND_AND_FETCH = Library(
     (
         _bool("donor-has-been-located", "Its place is known, and nothing has spoken against it since."),
         _bool("we-already-have-the-widget", "The donor's object lies on the platform."),
-        Function("the-robots-home-position", "pose", "The pose of the first reading."),
+        Function(
+            "the-robots-home-position",
+            "pose",
+            "The pose of the first reading; with several, places about it in turn where nobody takes the object.",
+        ),
         Function(
             "set-goal-as-the-donors-location", "pose", "Before the donor, looking at it; no goal while not located."
         ),
@@ -603,7 +609,7 @@ FIND_AND_FETCH = Library(
         Function("where-to-listen-next", "pose", "For a search that drives: the place; none while a search goes on."),
         _command("keep-station", "Hold place and heading against being pushed, by odometry.", "drive"),
     ),
-    (_FETCH_PRESET, _SEVERAL, _FAINT, _ROUTE, *_DONOR, *_BEACONS, *_ROAMING, *_STATION),
+    (_FETCH_PRESET, _SEVERAL, _FAINT, _ROUTE, _HOME, *_DONOR, *_BEACONS, *_ROAMING, *_STATION),
     _build_find_and_fetch,
 )
 
