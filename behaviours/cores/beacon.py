@@ -61,7 +61,7 @@ def suspects_sun(signals: Sequence[float], model: BeaconModel) -> bool:
     A beacon within the edge is then heard with a tenth of its signal: a faint swelling, far above what noise alone
     makes of the mean of neighbours, far below what is heard. A beacon twice as far as the edge looks the same.
     """
-    width = 7
+    width = 15
     if len(signals) < width:
         return False
     swelling = float(np.convolve(signals, np.full(width, 1.0 / width), "valid").max())

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from behaviours.cores.crossing import CrossingSettings, crossing
-from behaviours.estimators.ir_search import IrSearch
-from behaviours.interface import wrap
+from behaviours.estimators.ir_search import IrSearch, IrSettings
+from behaviours.interface import IrReading, wrap
 
 SETTINGS = CrossingSettings()
 DEGREE = math.radians(1)
@@ -153,3 +153,96 @@ def test_a_sweep_takes_about_a_hundred_seconds(standin):
     world.ir_period = 1.0
     sweep(standin, world)
     assert 90 <= world.stamp <= 120, "91 fixations of a second each, and the head's moves"
+
+
+# --- why there is no direction ----------------------------------------------------------------------
+
+
+CAUSES = ["too-few-ir-readings", "no-plus-to-minus-change", "the-ir-readings-disagree", "the-sun-is-suspected"]
+
+
+def causes(percepts):
+    return [name for name in CAUSES if percepts[name]]
+
+
+def test_nothing_heard_is_too_few_readings_and_no_sun(standin):
+    _, percepts = sweep(standin, beacon(standin, 200, 1)[0])
+    assert causes(percepts) == ["too-few-ir-readings"]
+
+
+@pytest.mark.parametrize("feet", [15, 20, 24])
+def test_a_faint_swelling_is_suspected_to_be_a_beacon_in_the_sun(standin, feet):
+    for seed in range(3):
+        _, percepts = sweep(standin, beacon(standin, feet, seed, sun=True)[0])
+        assert causes(percepts) == ["too-few-ir-readings", "the-sun-is-suspected"]
+
+
+def test_a_beacon_at_the_edge_of_the_sweep_does_not_change_from_plus_to_minus(standin):
+    away = 15 * standin.FOOT
+    donor = standin.Disc(away * math.cos(1.55), away * math.sin(1.55), 0.25)
+    world = standin.World(seed=2, donor=donor, ir_period=0.1, far=0.4)
+    _, percepts = sweep(standin, world)
+    assert causes(percepts) == ["no-plus-to-minus-change"]
+
+
+def test_a_beacon_that_rocks_too_much_gives_readings_that_disagree(standin):
+    _, percepts = sweep(standin, beacon(standin, 20, 0, wind=8 * DEGREE)[0])
+    assert causes(percepts) == ["the-ir-readings-disagree"]
+
+
+def test_a_search_that_succeeds_has_no_cause_of_failure(standin):
+    _, percepts = sweep(standin, beacon(standin, 20, 0)[0])
+    assert causes(percepts) == []
+
+
+def test_the_next_search_reports_why_the_last_one_failed(standin):
+    world = beacon(standin, 20, 0, sun=True)[0]
+    robot = standin.Robot("robot", "ir-search")
+    while not robot.sense(reading := world.read())["the-ir-search-is-finished"]:
+        running = robot.percepts["ir-search-has-been-started"]()
+        world.act(robot.act(reading, "continue-ir-search" if running else "start-ir-search"))
+    robot.act(reading, "start-ir-search")
+    assert robot.reports["start-ir-search"].details == {"failed": "too few readings", "sun_suspected": True}
+
+
+# --- a search that listens all round first -------------------------------------------------------------
+
+
+def listen(standin, off, feet, seed=0):
+    """One search with roam; the estimator, the world, and the percepts at its end."""
+    away = feet * standin.FOOT
+    donor = standin.Disc(away * math.cos(off), away * math.sin(off), 0.25)
+    world = standin.World(seed=seed, donor=donor, ir_period=0.2, far=0.4)
+    robot = standin.Robot("robot", "ir-search", ir_search={"preset": "modern"})
+    while world.stamp < 200 and not robot.sense(reading := world.read())["the-ir-search-is-finished"]:
+        running = robot.percepts["ir-search-has-been-started"]()
+        world.act(robot.act(reading, "continue-ir-search" if running else "start-ir-search"))
+    return robot.estimator(IrSearch), world, robot
+
+
+@pytest.mark.parametrize("off", [0.0, 1.2, -2.0, 3.1])
+def test_a_search_with_roam_turns_to_a_beacon_on_any_side(standin, off):
+    search, world, _ = listen(standin, off, 22)
+    assert wrap(search.direction.bearing - off) == pytest.approx(0.0, abs=2 * DEGREE)
+    assert abs(wrap(world.pose.theta - off)) < 5 * DEGREE
+    assert math.hypot(world.pose.x, world.pose.y) < 0.01
+
+
+def test_the_strength_of_the_signal_tells_how_far_the_beacon_is(standin):
+    for feet in (10, 18, 23):
+        search, _, _ = listen(standin, 0.5, feet)
+        assert search.direction.reach == pytest.approx(feet * standin.FOOT, rel=0.05)
+
+
+def test_a_circle_in_which_nothing_is_heard_is_enough_to_fail(standin):
+    search, world, robot = listen(standin, 0.5, 40)
+    assert robot.percepts["too-few-ir-readings"]()
+    assert search.progress()["of"] == 24 and world.stamp < 30
+
+
+def test_a_beacon_that_is_not_wanted_is_not_turned_to(standin):
+    search = IrSearch(IrSettings(roam=True))
+    search.wants = lambda name: name != "served"
+    heard = IrReading(0.0, True, 0.0, True, 0.1, 5.0, "served")
+    assert not search._counts(heard)
+    assert search._counts(IrReading(0.0, True, 0.0, True, 0.1, 5.0, "other"))

@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from behaviours.cores.ground import GroundSettings, ground_points, off_the_ground, pans, sigma, tilt
-from behaviours.estimators.stereo_search import StereoSearch
+from behaviours.estimators.stereo_search import StereoSearch, StereoSettings
+from behaviours.interface import Odometry, Pose, Reading, Report, StereoReading
 
 SETTINGS = GroundSettings()
 
@@ -147,3 +148,81 @@ def test_a_search_of_nine_seconds_a_look_takes_about_five_minutes(standin):
     world = ahead(standin, 25 * standin.FOOT - 0.25, period=9.0)
     search(standin, world)
     assert 240 <= world.stamp <= 330
+
+
+# --- from the horizon down --------------------------------------------------------------------------
+
+
+class Over:
+    """A stand-in for the searches alone: a low box before a donor, at rest, without noise. Lengths [m]."""
+
+    def __init__(self, *things, reach=math.nan, **settings):
+        self.things, self.stamp = things, 0.0
+        self.search = StereoSearch(StereoSettings(**settings), lambda: 0.0, lambda: reach)
+
+    def slant(self, head):
+        """To the first of (distance, height) that the ray is not above, or to the ground."""
+        falls = math.tan(head.tilt)
+        met = [away for away, height in self.things if 1.2 - falls * away < height]
+        return min([1.2 / falls, *met]) / math.cos(head.tilt)
+
+    def run(self, limit=400):
+        reports = {"start-stereo-ranging": Report()}
+        for _ in range(limit):
+            self.stamp += 9.0
+            here = reading(self.stamp)
+            look = self.search.look(here) if self.search.is_started() else self.search.first_look(here)
+            stereo = StereoReading(self.stamp, True, look.pan, look.tilt, self.slant(look), 1.2)
+            self.search.update(reading(self.stamp, stereo), reports, {})
+            reports = {"continue-stereo-search": Report()}
+            if self.search.is_finished():
+                return self.search
+        raise AssertionError("no end")
+
+
+def reading(stamp, stereo=None):
+    return Reading(stamp, 0, Odometry(Pose(0.0, 0.0), 0.0, 0.0), stereo=stereo)
+
+
+LOW_BOX, DONOR = (3.0, 0.5), (5.8, 0.9)
+
+
+def test_near_to_far_finds_the_box_before_the_donor():
+    assert Over(LOW_BOX, DONOR).run().found.ground == pytest.approx(3.0, abs=0.1)
+
+
+def test_from_the_horizon_finds_the_donor_behind_the_box():
+    search = Over(LOW_BOX, DONOR, reach=6.05, from_horizon=True).run()
+    assert search.found.ground == pytest.approx(5.8, abs=0.1)
+
+
+def test_what_does_not_fit_the_strength_of_the_beacon_is_passed_over():
+    wall = (8.5, 2.0)
+    assert Over(wall, from_horizon=True, reach=6.05).run().found is None
+    search = Over((3.2, 0.9), wall, from_horizon=True, reach=3.45).run()
+    assert search.found.ground == pytest.approx(3.2, abs=0.1)
+
+
+def test_without_a_strength_the_farthest_within_the_cut_off_is_taken():
+    assert Over(LOW_BOX, DONOR, from_horizon=True).run().found.ground == pytest.approx(5.8, abs=0.1)
+
+
+def test_the_range_comes_with_its_error_envelope():
+    search = Over(DONOR).run()
+    assert 0.2 < search.envelope() < 0.6
+    assert search.range_found() == search.found.ground
+
+
+def test_a_head_that_is_lifted_in_vain_is_sent_home():
+    search = Over(DONOR, fixation_timeout=5.0).search
+    search.update(reading(0.0), {"start-stereo-ranging": Report()}, {})
+    looks, stamp = [], 0.0
+    while not search.is_finished():
+        stamp += 1.0
+        search.update(reading(stamp), {"continue-stereo-search": Report()}, {})
+        look = search.look(reading(stamp))
+        looks.append((look.pan == 0.0, look.tilt == 0.0, search.needs_help()))
+    lifted, homed = looks.index((False, True, False)), looks.index((True, True, False))
+    asked = looks.index((True, True, True))
+    assert lifted < homed < asked
+    assert search.is_no_good() and "tap" in search.reason
