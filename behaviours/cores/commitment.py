@@ -5,30 +5,37 @@ inherits. Leaves alone: which groups move (they are not locked), and how a spin 
 
 The rule to leave is that of TangentBug (Kamon, Rivlin and Rimon 1998): an obstacle is followed until the goal can be
 approached nearer than the nearest point since it was met. With it no obstacle is met again from the same place.
+A side that leads too far from the goal is given up for the other, and each time it may lead twice as far: what is lost
+by a wrong side is then at most a multiple of what the right one costs.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from behaviours.cores.nat import Group, Memory, NatPlan, Spin, opposite
 
 
 @dataclass(frozen=True, slots=True)
 class CommitmentSettings:
-    """leave_by [m]: so much nearer to the goal than where the group was met the robot must be to leave it."""
+    """leave_by [m]: so much nearer to the goal than where the group was met the robot must be to leave it.
+
+    detour [m]: so much farther from the goal than there the robot may come before it tries the other side.
+    """
 
     leave_by: float = 0.3
+    detour: float = 5.0
 
 
 @dataclass(frozen=True, slots=True)
 class Lock:
-    """A spin, and how near to the goal [m] the robot was when it was locked."""
+    """A spin, how near to the goal [m] the robot was when it was locked, and how much farther it may come."""
 
     spin: Spin
     followed: float
+    detour: float
 
 
 Locks = Mapping[int, Lock]
@@ -49,14 +56,21 @@ def commit(plan: NatPlan, locks: Locks, away: float, moving: Collection[int], se
         lock = _lock_of(group, after)
         if lock is not None and _may_leave(group, lock, away, settings):
             after = {ident: lock for ident, lock in after.items() if ident not in group.idents}
+        elif lock is not None and group.heeded and away > lock.followed + lock.detour:
+            after.update(dict.fromkeys(group.idents, _other_side(lock)))
         elif lock is not None or group.heeded and group.right < 0.0 < group.left:
-            after.update(dict.fromkeys(group.idents, lock or Lock(group.spin, away)))
+            after.update(dict.fromkeys(group.idents, lock or Lock(group.spin, away, settings.detour)))
     return after
 
 
-def turned(group: Group, locks: Locks, away: float) -> Locks:
+def turned(group: Group, locks: Locks, away: float, settings: CommitmentSettings) -> Locks:
     """The locks after the robot has given up passing the group on this side."""
-    return {**locks, **dict.fromkeys(group.idents, Lock(opposite(group.spin), away))}
+    lock = _lock_of(group, locks) or Lock(group.spin, away, settings.detour)
+    return {**locks, **dict.fromkeys(group.idents, replace(lock, spin=opposite(group.spin)))}
+
+
+def _other_side(lock: Lock) -> Lock:
+    return Lock(opposite(lock.spin), lock.followed, 2.0 * lock.detour)
 
 
 def inherit(spins: Memory, locks: Locks) -> Memory:

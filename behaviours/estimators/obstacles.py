@@ -114,7 +114,7 @@ class Obstacles:
             return
         pose, goal = reading.odometry.pose, self.plan.goal
         if self._commitment is not None:
-            self._locks = turned(group, self._locks, distance(pose, goal))
+            self._locks = turned(group, self._locks, distance(pose, goal), self._commitment)
             self._spins = inherit(self._spins, self._locks)
         else:
             locked = (opposite(group.spin), reading.stamp + self._deadlock.lock)
