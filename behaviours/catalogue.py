@@ -496,9 +496,7 @@ STEREO_SEARCH = Library(
         Function("the-error-of-the-range", "number", "How far that range may be off, 0 where there is none.", unit="m"),
         _bool("the-head-is-stuck", "It has not come to rest where it was sent for some time."),
         _bool("the-head-needs-a-person", "The search has tried in vain to free the head."),
-        _command(
-            "un-stick-the-head", "Stand; send the tilt home, then both axes, then ask a person.", "drive", "head"
-        ),
+        _command("un-stick-the-head", "Stand; send the tilt home, then both axes, then ask a person.", "drive", "head"),
         _command(stereo_search.START, "Begin a search from scratch.", "drive", "head"),
         _command(stereo_search.CONTINUE, "Go on with the search.", "drive", "head"),
     ),

@@ -1,7 +1,7 @@
 """Going to the goal by navigation templates.
 
-Takes: the channel `goal`, a plan among the obstacles, the ring, what moves. Gives: drive, a head that looks where the goal
-pose looks, and the plan for inspection. Leaves alone: what is remembered of obstacles, and when the goal is reached.
+Takes: the channel `goal`, a plan among the obstacles, the ring, what moves. Gives: drive, a head that looks where the
+goal pose looks, and the plan for inspection. Leaves alone: what is remembered of obstacles, and when the goal is reached.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Traffic:
 
     points: Callable[[float], list[Moving]]
     velocities: Callable[[], Mapping[int, Vec2]]
-    gate: GateSettings = GateSettings()
+    gate: GateSettings
 
 
 class Natigate:
@@ -75,6 +75,9 @@ class Natigate:
         if self._traffic is not None:
             speed = self._give_way(pose, speed, ring, self._traffic.points(reading.stamp))
         return Command(Drive(speed, turn_rate), self._look_at(pose, goal)), Report(details=self._tell(plan))
+
+    def stop(self) -> None:
+        self._pan, self._given_way = None, math.inf
 
     def _give_way(self, pose: Pose, speed: float, ring: Ranges | None, moving: list[Moving]) -> float:
         """The speed that does not meet what moves; never backwards into what stands."""

@@ -43,7 +43,8 @@ def gate(
 ) -> float:
     """The first of the speeds v, v/2, 0, -max/2, -max [m/s] that meets nothing, else the one that keeps off farthest.
 
-    speed [m/s]: what is wanted; radius [m] of the robot; before: the speed chosen last, infinite if it did not give way.
+    speed [m/s]: what is wanted; radius [m] of the robot; before: the speed chosen last, infinite if it did not give
+    way.
     """
     if not moving:
         return speed
@@ -62,7 +63,7 @@ def least_gap(robot: Pose, speed: float, radius: float, moving: Sequence[Moving]
 
     The robot is taken to go straight on. What is near already and goes away does not count: infinite.
     """
-    times = np.arange(1, round(settings.horizon / settings.step) + 1) * settings.step
+    times: Floats = np.arange(1, round(settings.horizon / settings.step) + 1, dtype=np.float64) * settings.step
     x, y = straight(robot, speed, times)
     points, speeds = np.array([point for point, _ in moving]), np.array([velocity for _, velocity in moving])
     dx = x[:, None] - points[:, 0] - times[:, None] * speeds[:, 0]

@@ -45,7 +45,8 @@ Locks = Mapping[int, Lock]
 def commit(plan: NatPlan, locks: Locks, away: float, moving: Collection[int], settings: CommitmentSettings) -> Locks:
     """The locks after a plan; away [m] to the goal; moving: circles of what moves.
 
-    A group takes over the lock that most of its circles have; one whose circles mostly move has none. A circle that is forgotten has none.
+    A group takes over the lock that most of its circles have; one whose circles mostly move has none. A circle that is
+    forgotten has none.
     """
     present = {circle.ident for circle in plan.circles}
     after = {ident: lock for ident, lock in locks.items() if ident in present and ident not in moving}
@@ -58,7 +59,7 @@ def commit(plan: NatPlan, locks: Locks, away: float, moving: Collection[int], se
             after = {ident: lock for ident, lock in after.items() if ident not in group.idents}
         elif lock is not None and group.heeded and away > lock.followed + lock.detour:
             after.update(dict.fromkeys(group.idents, _other_side(lock)))
-        elif lock is not None or group.heeded and group.right < 0.0 < group.left:
+        elif lock is not None or (group.heeded and group.right < 0.0 < group.left):
             after.update(dict.fromkeys(group.idents, lock or Lock(group.spin, away, settings.detour)))
     return after
 

@@ -1,7 +1,7 @@
 """Where something was heard and where nothing was: a grid about the robot that remembers longer than circles do.
 
-Takes: sweeps of a ring of ranges and the robot's pose in a frame that stands still. Gives: which echoes come from a place
-that was free a moment ago (something moves there), and circles about what stands. Leaves alone: the way.
+Takes: sweeps of a ring of ranges and the robot's pose in a frame that stands still. Gives: which echoes come from a
+place that was free a moment ago (something moves there), and circles about what stands. Leaves alone: the way.
 
 The grid is a torus: what is farther apart than its side shares cells, so it holds only what is younger than the time
 in which the robot could drive half that far. Memory is bounded by its size. The arrays are changed in place.
@@ -32,7 +32,8 @@ class EvidenceSettings:
     """cell, reach, before, radius [m]; keep, was_free [s]; kept_obstacles: the greatest number of circles.
 
     before: a beam frees nothing nearer to its echo. was_free: so long a place that was free makes an echo one of
-    something that moves. sure: so many sweeps in a row that go through it, a place is forgotten. reach: circles are given within it about the robot.
+    something that moves. sure: when so many sweeps in a row go through a place, it is forgotten. reach: circles are
+    given within it about the robot.
     """
 
     cell: float = 0.3

@@ -21,10 +21,13 @@ Edge = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class TrackSettings:
-    """settle [s]: time constant of the filters of the edges; link, gate [m]: within a cluster, and to its track; patience [s] without echo;
-    moving, fastest [m/s]: slower is standing, faster is not believed; sightings: sweeps until a velocity is believed;
-    gone [m]: so far its middle must have gone; jump [m]: an edge of a known track that is off by more than this has come
-    into view or gone out of it, and says nothing of the velocity."""
+    """settle [s]: time constant of the filters of the edges; link, gate [m]: within a cluster, and to its track.
+
+    jump [m]: an edge of a known track that is off by more than this has come into view or gone out of it, and says
+    nothing of the velocity. patience [s]: a track without an echo is kept so long. moving, fastest [m/s]: slower is
+    standing, faster is not believed; sightings: sweeps until a velocity is believed; gone [m]: so far its middle must
+    have gone.
+    """
 
     settle: float = 0.35
     link: float = 1.5
@@ -90,7 +93,7 @@ class Tracks:
 def follow(tracks: Tracks, points: Sequence[Vec2], now: float, settings: TrackSettings) -> Tracks:
     """The tracks after a sweep with these echoes at stamp now [s]; several clusters may go on one track."""
     taken: list[list[Vec2]] = [[] for _ in tracks.tracks]
-    after = []
+    after: list[Track] = []
     for cluster in cluster_of(points, settings.link):
         at = _nearest(tracks.tracks, cluster, now, settings)
         if at is None:
@@ -156,7 +159,9 @@ def _gains(sightings: int, dt: float, settings: TrackSettings) -> tuple[float, f
     """alpha and beta: those of the best line through all sightings, until these are fewer than the filter remembers."""
     k = sightings
     alpha = max(1.0 - math.exp(-dt / settings.settle), 2.0 * (2 * k - 1) / (k * (k + 1)))
-    return alpha, 6.0 / (k * (k + 1)) if alpha > 1.0 - math.exp(-dt / settings.settle) else alpha * alpha / (2.0 - alpha)
+    return alpha, 6.0 / (k * (k + 1)) if alpha > 1.0 - math.exp(-dt / settings.settle) else alpha * alpha / (
+        2.0 - alpha
+    )
 
 
 def _filtered(edge: Edge, seen: float, dt: float, gains: tuple[float, float], jump: float, fastest: float) -> Edge:

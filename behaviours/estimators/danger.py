@@ -1,6 +1,7 @@
 """Whether anything is within the safety radius of the hull.
 
-Takes: both sonar rings, or another ring. Gives: danger with a release margin, and the nearest range. Leaves alone: what to do about it.
+Takes: both sonar rings, or another ring. Gives: danger with a release margin, and the nearest range.
+Leaves alone: what to do about it.
 """
 
 from __future__ import annotations

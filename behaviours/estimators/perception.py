@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from behaviours.cores.circles import Circle, Circles, CircleSettings, perceive
 from behaviours.cores.collision import Moving
@@ -27,8 +27,8 @@ class PerceptionSettings:
 
     memory: bool = False
     tracking: bool = False
-    evidence: EvidenceSettings = EvidenceSettings()
-    track: TrackSettings = TrackSettings()
+    evidence: EvidenceSettings = field(default_factory=EvidenceSettings)
+    track: TrackSettings = field(default_factory=TrackSettings)
 
 
 class Perception:

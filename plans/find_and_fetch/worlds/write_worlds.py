@@ -48,7 +48,7 @@ things:
 """
 
 CANYON = """\
-# A canyon of {width:g} x {depth:g} m, open towards the robot, with the goal behind its back wall, 16 degrees to the left.
+# A canyon of {width:g} x {depth:g} m, open towards the robot; the goal is behind its back wall, 16 degrees to the left.
 # The seed turns the robot, and with it the goal that it is given, by 4 degrees to either side.
 name: canyon {width:g} x {depth:g}
 bounds: [-4, -7, 10, 7]
