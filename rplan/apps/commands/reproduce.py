@@ -29,6 +29,8 @@ from rplan.apps.sweep.processes import EngineError
 from sim.scenarios.schema import ScenarioError
 
 MISSED = 1
+LIKE = 0.5
+"""How like a name must be to be the one that was meant; of two letters one."""
 WIDE = 200  # columns, where the reader is no terminal
 
 
@@ -105,7 +107,7 @@ def _known(name: str, known: Sequence[str]) -> str:
     for one in known:
         if one.lower() == name.lower():
             return one
-    meant = get_close_matches(name.lower(), [one.lower() for one in known], 1)
+    meant = get_close_matches(name.lower(), [one.lower() for one in known], 1, LIKE)
     hint = next((f"; did you mean {one}?" for one in known if meant and one.lower() == meant[0]), "")
     raise InputError(f"there is no row or paper {name}{hint} (there are: {', '.join(known)})")
 
@@ -151,8 +153,7 @@ def _run(every: Sequence[Batch], workers: int) -> tuple[list[Measures], bool]:
     found: list[Measures] = []
     try:
         with _progress(sum(len(batch.tasks) for batch in every)) as progress:
-            for batch in every:
-                found += experiment.run([batch], workers, progress)
+            found.extend(experiment.run(every, workers, progress))
     except KeyboardInterrupt:
         return found, True
     except EngineError as error:

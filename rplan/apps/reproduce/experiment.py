@@ -9,7 +9,7 @@ The workers are those of sweeps (rplan/apps/sweep/processes.py): a killed one co
 from __future__ import annotations
 
 import multiprocessing
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -156,30 +156,19 @@ def start() -> Worker:
 
 # --- the run ------------------------------------------------------------------------------------------
 
-Engine = Callable[[Work, Sequence[Task], int], Generator[tuple[Task, Measures], None, None]]
 
+def run(every: Iterable[Batch], workers: int, progress: Callable[[Measures], None]) -> Iterator[Measures]:
+    """The measures of every episode, in the order in which they were asked for. Raises EngineError.
 
-def on_processes(work: Work, tasks: Sequence[Task], workers: int) -> Generator[tuple[Task, Measures], None, None]:
-    """Episodes on processes of this machine. Raises EngineError."""
-    return processes.run(work, tasks, workers, start)
-
-
-def run(
-    every: Iterable[Batch],
-    workers: int,
-    progress: Callable[[Measures], None],
-    engine: Engine = on_processes,
-) -> list[Measures]:
-    """The measures of every episode, in the order in which they were asked for. Raises EngineError."""
-    found: list[Measures] = []
+    progress: told of each episode when it is ready.
+    """
     for batch in every:
         ready: dict[Task, Measures] = {}
-        rows = engine(batch.work, batch.tasks, workers)
+        rows = processes.run(batch.work, batch.tasks, workers, start)
         try:
             for task, measures in rows:
                 ready[task] = measures
                 progress(measures)
         finally:
             rows.close()
-        found += [ready[task] for task in batch.tasks]
-    return found
+        yield from (ready[task] for task in batch.tasks)

@@ -70,9 +70,9 @@ def text(paper: str, every: Sequence[Result], seeds: int, drawn: Mapping[str, Se
         f"```sh\nrplan reproduce {paper} --seeds {seeds} --write docs\n```\n",
         f"{len(counts)} figures of the paper: {counts.count('met')} met, {counts.count('close')} close (within a "
         f"tenth), {counts.count('missed')} missed. Spreads are median (least to most, n = episodes). Seeds are fixed: "
-        f"the command gives the same figures again; [{paper}.csv]({paper}.csv) has a line for every episode. How "
-        "a row is run and judged stands in `rplan/apps/reproduce/rows/`, and [the how-to](../how-to/reproduce_a_paper.md) says "
-        "how to look at one run or add a row.\n",
+        f"the command gives the same figures again; [{paper}.csv]({paper}.csv) has a line for every episode. "
+        "How a row is run and judged stands in `rplan/apps/reproduce/rows/`, and "
+        "[the how-to](../how-to/reproduce_a_paper.md) says how to look at one run or add a row.\n",
         _overview(every),
     ]
     for name, some in groupby(every, key=lambda result: result.asked.row.name):

@@ -109,9 +109,9 @@ ROW = Row(
         "under two minutes”."
     ),
     note=(
-        "The distance from which the robot slows down is not printed; its 1.5 m were chosen so that these "
-        "times come out: the agreement tells little. Nor is it printed where the obstacles stood: scattered over a lot of 8 x 6.6 m "
-        "they are met less often, and the round trip takes 2.7 min."
+        "The distance from which the robot slows down is not printed. Its 1.5 m were chosen so that these times come "
+        "out, so the agreement tells little. Nor is it printed where the obstacles stood: scattered over a lot of "
+        "8 x 6.6 m they are met less often, and the round trip takes 2.7 min."
     ),
     cases=cases,
     measure=measure,

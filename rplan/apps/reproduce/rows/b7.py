@@ -26,7 +26,8 @@ def cases(seeds: int) -> tuple[Case, ...]:
 def measure(seen: Seen) -> Measures:
     """How long [s] after the donor stands again its place is given up and both searches begin from scratch."""
     stopped = stands_again(seen.moments)
-    after = [] if stopped is None else [moment for moment in seen.moments if moment.time >= begun(seen.moments)]
+    since = begun(seen.moments)
+    after = [moment for moment in seen.moments if moment.time >= since]
     sweeps = starts_of(after, "start-ir-search")
     forgotten = next((m.time for m in after if not m.percepts[LOCATED] and not m.percepts[STARTED]), None)
     both = None if stopped is None or forgotten is None or not sweeps else max(0.0, max(forgotten, sweeps[0]) - stopped)
