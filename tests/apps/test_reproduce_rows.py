@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import pytest
 
+from behaviours.cores.ground import GroundSettings, pans
 from behaviours.interface import STOP, Command, Head, Odometry, Pose, Reading, Report
 from rplan.apps.reproduce import figures
 from rplan.apps.reproduce.row import Finding, Measures, Moment, Seen
@@ -327,7 +328,7 @@ def search(*sweeps: float, found: float | None, donor: Mapping[str, Pose], head:
 
 
 def test_b6_measures_how_far_the_stereo_search_looks_past_the_donor() -> None:
-    offset = b6.pans(b6.GroundSettings())[0]
+    offset = pans(GroundSettings())[0]
     looks = Head(math.radians(31.0) + offset, 0.3)
     donor = {"donor": Pose(5.0 * math.cos(math.radians(30)), 5.0 * math.sin(math.radians(30)))}
     measured = b6.measure(search(0.0, found=90.0, donor=donor, head=looks))
