@@ -16,7 +16,7 @@ from rich.console import Console
 
 from rplan.apps.cli import cli
 from rplan.apps.commands import reproduce as command
-from rplan.apps.reproduce import experiment
+from rplan.apps.reproduce import experiment, report
 from rplan.apps.reproduce.experiment import Asked, Bench, batches
 from rplan.apps.reproduce.figures import case_of, seed_of
 from rplan.apps.reproduce.row import Case, Finding, Judgement, Measures, Plot, Preset, Row, Seen
@@ -326,3 +326,13 @@ def test_workers_are_processes_of_their_own() -> None:
     assert isinstance(worker.connection.recv(), Unfit)
     worker.process.join()
     assert worker.process.exitcode == 0
+
+
+def test_a_run_without_changed_keys_is_shown_by_rplan_simulate() -> None:
+    asked = Asked(ROW, "paper")
+    whole = Finding("ticks", "20", "300", "met", case="whole", seed=0)
+    result = report.Result(asked, ROW.cases(1), (), (), (whole,))
+    assert report.see(result, whole) == (
+        "rplan simulate plans/go_to_goal --scenario make_room/visit --seed 0 --replay x.html"
+    )
+    assert report.see(result, replace(whole, seed=None)) == ""
