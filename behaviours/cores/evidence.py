@@ -39,7 +39,7 @@ class EvidenceSettings:
     cell: float = 0.3
     reach: float = 8.0
     before: float = 0.4
-    radius: float = 0.15
+    radius: float = 0.05
     keep: float = 120.0
     was_free: float = 8.0
     kept_obstacles: int = 120
