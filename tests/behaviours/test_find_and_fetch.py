@@ -4,10 +4,12 @@ import math
 
 import pytest
 
-from behaviours.estimators.donor import DonorMemory
-from behaviours.estimators.ir_search import IrSearch
-from behaviours.estimators.stereo_search import StereoSearch
-from behaviours.interface import Pose, wrap
+from behaviours.estimators.donor import DonorMemory, DonorSettings
+from behaviours.estimators.home import Home
+from behaviours.estimators.ir_search import Direction, IrSearch, IrSettings
+from behaviours.estimators.navigation import ArrivalSettings, NavigationGoal
+from behaviours.estimators.stereo_search import Found, StereoSearch, StereoSettings
+from behaviours.interface import IrReading, Odometry, Pose, Reading, wrap
 
 FIELD = [(2.5, 1.0, 0.3), (4.2, -1.3, 0.3), (4.6, 1.2, 0.2), (2.3, -1.4, 0.25)]
 
@@ -196,3 +198,99 @@ def test_a_beacon_that_rocks_too_much_is_looked_for_in_the_same_direction(standi
     assert run(robot, world, lambda: len(robot.failures) == 3, 300)
     assert robot.estimator(IrSearch).reason == "readings disagree"
     assert world.pose.theta == 0.0
+
+
+# --- several donors -----------------------------------------------------------------------------------
+
+
+class Errand:
+    """The memory of donors alone: what is found and what is on board is given by the test."""
+
+    def __init__(self, **settings):
+        self.ir = IrSearch(IrSettings(roam=True))
+        self.stereo = StereoSearch(StereoSettings(), lambda: None)
+        goal = NavigationGoal(ArrivalSettings())
+        self.donor = DonorMemory(DonorSettings(several=True, **settings), self.ir, self.stereo, goal)
+        self.stamp = 0.0
+
+    def find(self, beacon, bearing, ground):
+        self.ir.direction = Direction(Pose(0.0, 0.0), bearing, beacon)
+        self.stereo.found = Found(Pose(0.0, 0.0), bearing, ground)
+        self.tick()
+
+    def tick(self, on_board=False, ir=None):
+        self.stamp += 0.1
+        odometry = Odometry(Pose(0.0, 0.0), 0.0, 0.0)
+        self.donor.update(Reading(self.stamp, 0, odometry, ir=ir, object_on_board=on_board), {}, {})
+
+    def fetch(self):
+        self.tick(on_board=True)
+        self.tick(on_board=False)
+
+
+def test_a_donor_that_has_handed_over_everything_is_wanted_no_more():
+    errand = Errand(donors=2)
+    errand.find("ann", 0.0, 5.0)
+    assert errand.donor.is_located() and errand.ir.wants("ann")
+    errand.tick(on_board=True)
+    assert errand.donor.is_located(), "until the object is off the platform"
+    errand.tick(on_board=False)
+    assert not errand.donor.is_located() and not errand.ir.knows_direction()
+    assert not errand.ir.wants("ann") and errand.ir.wants("bob")
+
+
+def test_a_donor_is_left_until_all_have_been_served():
+    errand = Errand(donors=2)
+    for beacon, left in (("ann", True), ("bob", False)):
+        errand.find(beacon, 0.3, 4.0)
+        errand.fetch()
+        assert errand.donor.is_left() == left
+
+
+def test_a_donor_with_two_objects_is_kept_for_the_second_trip():
+    errand = Errand(trips=2)
+    errand.find("ann", 0.0, 5.0)
+    errand.fetch()
+    assert errand.donor.is_located() and errand.donor.is_left()
+    errand.fetch()
+    assert not errand.donor.is_located() and not errand.donor.is_left()
+
+
+def test_of_the_donors_that_are_known_the_nearest_comes_next():
+    errand = Errand(donors=3)
+    errand.find("ann", 0.0, 2.0)
+    errand.donor.fronts |= {"bob": Pose(6.0, 0.0), "cid": Pose(0.0, -4.0)}
+    errand.fetch()
+    assert errand.donor.name == "cid"
+    assert errand.donor.docking_pose() is not None
+
+
+def test_the_beacon_of_another_donor_does_not_say_that_this_one_has_moved():
+    errand = Errand(donors=2)
+    errand.find("ann", 0.0, 5.0)
+    for _ in range(5):
+        errand.tick(ir=IrReading(errand.stamp, True, 0.0, True, 0.4, 5.0, "bob"))
+    assert errand.donor.is_located()
+    for _ in range(5):
+        errand.tick(ir=IrReading(errand.stamp, True, 0.0, True, 0.4, 5.0, "ann"))
+    assert errand.donor.why_forgotten == "the donor has moved"
+
+
+def test_who_waits_at_home_in_vain_looks_for_it_about():
+    home = Home(patience=20.0)
+    places, pose = [], Pose(0.0, 0.0)
+    for second in range(65):
+        home.update(Reading(float(second), 0, Odometry(pose, 0.0, 0.0), object_on_board=second > 0), {}, {})
+        pose = home.place
+        places.append((round(pose.x, 2), round(pose.y, 2)))
+    assert len(dict.fromkeys(places)) == 4 and places[0] == (0.0, 0.0)
+    assert all(math.hypot(*place) == pytest.approx(0.8, abs=0.01) for place in places[30:])
+    home.update(Reading(99.0, 0, Odometry(pose, 0.0, 0.0)), {}, {})
+    assert home.place == Pose(0.0, 0.0), "once the object is off"
+
+
+def test_without_several_home_stays_where_it_is():
+    home = Home()
+    for second in range(200):
+        home.update(Reading(float(second), 0, Odometry(Pose(0.0, 0.0), 0.0, 0.0), object_on_board=True), {}, {})
+    assert home.place == Pose(0.0, 0.0)

@@ -126,7 +126,9 @@ def _directions(compiled: Compiled, seeds: int) -> list[str]:
     runs = [Searcher(compiled, "ir_wind", seed).run("direction", sweeps=20) for seed in range(seeds)]
     retries = [len(run.reasons) for run in runs]
     within = sum(run.angle_error <= math.radians(2.0) for run in runs)
-    rows.append(f"ir_wind: mean retries {sum(retries) / seeds:.2f}, most {max(retries)}, within 2 degrees {within}/{seeds}")
+    rows.append(
+        f"ir_wind: mean retries {sum(retries) / seeds:.2f}, most {max(retries)}, within 2 degrees {within}/{seeds}"
+    )
     return rows
 
 
