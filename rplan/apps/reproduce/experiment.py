@@ -8,6 +8,7 @@ The workers are those of sweeps (rplan/apps/sweep/processes.py): a killed one co
 
 from __future__ import annotations
 
+import json
 import multiprocessing
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -84,14 +85,16 @@ def scenario_at(scenario: str, plan: Path) -> Path:
 
 
 def variant_of(one: Asked, case: Case, world: World, compiled: Compiled) -> Variant:
-    """A case with its scenario as its settings make it. Raises GridError, ScenarioError."""
-    text = world.text
+    """A case with its scenario as its settings make it, and named after it. Raises GridError, ScenarioError."""
+    name = f"{one.row.name}, {case.name}" if case.settings else world.scenario.name
+    text = with_value(world.text, ("name",), json.dumps(name)) if case.settings else world.text
     for key, value in case.settings:
         text = with_value(text, path(key), value)
     file = f"{Path(case.scenario).name}.yaml"
     loads(text, file)
     shown = (("row", one.row.name), (PRESET, one.preset), ("case", case.name))
-    return Variant(world.scenario.name, file, text, presets(compiled, one.preset, catalogue()), shown)
+    changes = presets(compiled, one.preset, catalogue()) + (one.row.modern if one.preset == "modern" else ())
+    return Variant(name, file, text, changes, shown)
 
 
 def presets(compiled: Compiled, preset: Preset, libraries: Catalogue) -> tuple[Change, ...]:

@@ -195,8 +195,9 @@ def _draw(result: Result, folder: Path) -> Iterator[tuple[Path, str]]:
 
 
 def _shown(result: Result) -> tuple[Case, Finding] | None:
-    """The first finding that has a run to see."""
-    for finding in result.findings:
+    """The first finding that has a run to see, of the case that the row wants to show if there is one."""
+    wanted = result.asked.row.picture
+    for finding in sorted(result.findings, key=lambda finding: finding.case != wanted):
         case = next((case for case in result.cases if case.name == finding.case), None)
         if case is not None and finding.seed is not None:
             return case, finding

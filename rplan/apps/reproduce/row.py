@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from behaviours.interface import Command, Pose, Reading, Report
+from rplan.apps.sweep.work import Change
 from rplan.apps.sweep.work import Row as Columns
 from sim.judge import Verdict
 
@@ -93,6 +94,7 @@ class Row:
     set_up: what is run; printed: what the paper says; presets: those that it is judged by, unless others are asked for.
     cases: for a number of seeds; none where nothing is driven. measure: of one episode. judge: of all
     episodes of one preset that ran. plots: of measures, over all cases. note: what agreement is worth.
+    modern: what else the preset modern changes in the plan. picture: the case that pages draw, "": the first figure's.
     """
 
     name: str
@@ -106,3 +108,5 @@ class Row:
     presets: tuple[Preset, ...] = ("paper",)
     plots: tuple[Plot, ...] = ()
     note: str = ""
+    modern: tuple[Change, ...] = ()
+    picture: str = ""

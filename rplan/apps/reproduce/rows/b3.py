@@ -20,6 +20,7 @@ from rplan.apps.reproduce.figures import (
 )
 from rplan.apps.reproduce.row import Case, Finding, Measures, Moment, Plot, Preset, Row, Seen
 from rplan.apps.reproduce.watch import NAVIGATE, described, share_in_motion
+from rplan.apps.sweep.work import Change
 
 FIGURE, CROSSING = "Figure 2", "crossing"
 CAR, LENGTH, WIDTH = "car", 4.4, 1.8
@@ -33,11 +34,11 @@ WHERE = (-1.5 * 3.2 / 7.4, 3.2)  # [m] where the car crosses the straight way to
 RUN_UP = 14.0  # [m]
 IN_MOTION = 0.88
 MODERN_CONTACTS = 4
-SPIN = "circles come and go at the car's end, and the group that holds them is sometimes met as a new one"
+SPIN = "a fast car is past before its group has closed the way, so that it never has to be passed on the other side"
 BEHIND = "a slow car has not passed yet when the robot is there, and the way round its front is then the shorter one"
 STOPS = "the speed goes with the square of the cosine of the heading error: the robot all but stands while it turns"
 PUSHES = "the robot keeps moving by its plan when the car is within its blind spots"
-TOO_FAST = "sonars hear five metres: at 0.2 m/s the robot cannot leave the lane of a fast car in the time that is left"
+TOO_FAST = "at 0.2 m/s the robot cannot leave the lane of a fast car in the time that is left when it is seen"
 
 
 def cases(seeds: int) -> tuple[Case, ...]:
@@ -204,5 +205,10 @@ ROW = Row(
     measure=measure,
     judge=judge,
     presets=("paper", "modern"),
+    note=(
+        "With the preset modern the robot has a lidar of ten metres in place of its sonars. These hear five metres, "
+        "too short a warning at 0.2 m/s: with them the preset modern has a contact in 28 of the 64 crossings."
+    ),
+    modern=(Change("natigation", "ranges", "lidar"),),
     plots=(Plot("in_motion", "ticks in motion [%]", 100.0, (88.0, 100.0)), Plot("flips", "flips of the car's spin")),
 )

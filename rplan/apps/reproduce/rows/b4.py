@@ -75,7 +75,7 @@ ROW = Row(
     name="B4",
     paper="find-and-fetch",
     title="Box canyons",
-    set_up="A canyon open towards the robot, the goal two metres behind its back wall; ten minutes.",
+    set_up="A canyon open towards the robot, the goal behind its back wall; ten minutes.",
     printed=(
         "“The robot can become trapped in a box of obstacles which number more than the allocated memory resources”, "
         "which are ten circles. “A solution … is to remember configurations of obstacles.”"
@@ -84,5 +84,6 @@ ROW = Row(
     measure=measure,
     judge=judge,
     presets=("paper", "modern"),
+    picture=TRAPPED,
     plots=(Plot("time", "time to the goal [s]"), Plot("full", "ticks with ten circles or more [%]", 100.0)),
 )
