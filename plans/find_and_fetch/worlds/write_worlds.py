@@ -100,6 +100,7 @@ def main() -> None:
     here = Path(__file__).parent
     for speed in (0.6, 0.8, 1.0, 1.2, 1.4, 1.5, 1.6, 1.8, 2.0, 2.2):
         (here / f"car_{speed:.1f}.yaml").write_text(crossing(speed, 11.0), encoding="utf-8")
+    (here / "car_1.4_late.yaml").write_text(crossing(1.4, 16.0), encoding="utf-8")
     for width, depth in ((3, 2), (4, 3), (5, 4), (6, 5)):
         (here / f"canyon_{width}x{depth}.yaml").write_text(canyon(width, depth), encoding="utf-8")
 
