@@ -414,3 +414,13 @@ def test_b8_counts_the_ways_of_the_text(monkeypatch: pytest.MonkeyPatch) -> None
     assert told(b8.judge("paper", [])) == [("ways", "met", False)]
     monkeypatch.setattr(b8, "WAYS", 64)
     assert told(b8.judge("paper", [])) == [("ways", "missed", True)]
+
+
+def test_b3_counts_circles_that_the_car_has_left_behind_while_they_are_remembered() -> None:
+    gone = Pose(-9.0, 3.0, math.pi)
+    moments = [
+        moment(0.0, movers={"car": CAR}, details=plan("ccw", "cw")),
+        moment(1.5, movers={"car": gone}, details=plan("ccw", "ccw")),
+        moment(3.0, movers={"car": gone}, details=plan("ccw", "cw")),
+    ]
+    assert list(b3.spins_of_car(moments)) == ["cw", "ccw"]

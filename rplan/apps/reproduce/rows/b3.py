@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise, product
 
@@ -24,6 +25,7 @@ from rplan.apps.sweep.work import Change
 
 FIGURE, CROSSING = "Figure 2", "crossing"
 CAR, LENGTH, WIDTH = "car", 4.4, 1.8
+REMEMBERED = 2.0  # [s]
 NEAR = 0.6  # [m] from the car's outline: a circle that lies so near is one of the car's
 FIGURE_SPEEDS, FIGURE_MOMENTS = (0.6, 1.0, 1.4, 1.8, 2.2), (8.0, 10.0)
 """So that the car's lane and the robot, driving straight on, do not meet."""
@@ -34,7 +36,7 @@ WHERE = (-1.5 * 3.2 / 7.4, 3.2)  # [m] where the car crosses the straight way to
 RUN_UP = 14.0  # [m]
 IN_MOTION = 0.88
 MODERN_CONTACTS = 4
-SPIN = "a fast car is past before its group has closed the way, so that it never has to be passed on the other side"
+SPIN = "the car's circles are forgotten before the way round its other end is so much shorter that the spin changes"
 BEHIND = "a slow car has not passed yet when the robot is there, and the way round its front is then the shorter one"
 STOPS = "the speed goes with the square of the cosine of the heading error: the robot all but stands while it turns"
 PUSHES = "the robot keeps moving by its plan when the car is within its blind spots"
@@ -86,14 +88,23 @@ def measure(seen: Seen) -> Measures:
 
 
 def spins_of_car(moments: Sequence[Moment]) -> Iterator[str]:
-    """The spin of the group that has most of the car's circles, for each tick in which there is one."""
+    """The spin of the group that has most of the car's circles, for each tick in which there is one.
+
+    A circle is the car's where the car is or was as long ago as circles are remembered.
+    """
+    lately: deque[tuple[float, Pose]] = deque()
     for moment in moments:
         car, details = moment.movers.get(CAR), described(moment, NAVIGATE)
-        if car is None or not details:
+        if car is None:
+            continue
+        lately.append((moment.time, car))
+        while lately[0][0] < moment.time - REMEMBERED:
+            lately.popleft()
+        if not details:
             continue
         votes: dict[int, int] = {}
         for x, y, _, group in details["circles"]:
-            if group >= 0 and _is_near(in_world(moment, x, y), car):
+            if group >= 0 and any(_is_near(in_world(moment, x, y), where) for _, where in lately):
                 votes[group] = votes.get(group, 0) + 1
         if votes:
             yield str(details["groups"][max(votes, key=lambda group: (votes[group], -group))]["spin"])
