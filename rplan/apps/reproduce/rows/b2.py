@@ -80,5 +80,6 @@ ROW = Row(
     cases=cases,
     measure=measure,
     judge=judge,
+    picture=INTERRUPTED,
     plots=(Plot("total", "task [min]", 1 / 60, (10.0, 12.0)), Plot("search", "searches [min]", 1 / 60)),
 )
