@@ -1,7 +1,7 @@
 """Going to the goal by navigation templates.
 
 Takes: the channel `goal`, a plan among the obstacles, the ring, what moves. Gives: drive, a head that looks where the
-goal pose looks, and the plan for inspection. Leaves alone: what is remembered of obstacles, and when the goal is reached.
+goal pose looks, and the plan for inspection. Leaves alone: what is remembered of obstacles, when the goal is reached.
 """
 
 from __future__ import annotations
