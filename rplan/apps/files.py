@@ -24,6 +24,10 @@ class InputError(click.ClickException):
         click.echo(f"error: {self.format_message()}", err=True)
 
 
+SHARED = "lib"
+"""The folder of rules that several plans include; no plan of its own."""
+
+
 def plans_folder() -> Path:
     """Where the plans are that come with rplan."""
     return PACKAGED if PACKAGED.is_dir() else Path(__file__).parent.parent.parent / "plans"
@@ -31,7 +35,7 @@ def plans_folder() -> Path:
 
 def packaged_plans() -> list[Path]:
     """Every plan file that comes with rplan."""
-    return sorted(plans_folder().glob("*/*.rplan"))
+    return sorted(path for path in plans_folder().glob("*/*.rplan") if path.parent.name != SHARED)
 
 
 def plan_file(given: str) -> Path:
