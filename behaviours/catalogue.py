@@ -29,6 +29,7 @@ from behaviours.cores.crossing import DISAGREE, NO_CHANGE, TOO_FEW, CrossingSett
 from behaviours.cores.evidence import EvidenceSettings
 from behaviours.cores.ground import GroundSettings
 from behaviours.cores.nat import NatSettings
+from behaviours.cores.places import PlacesSettings
 from behaviours.cores.runaway import RunawaySettings
 from behaviours.cores.sectors import FINE, LidarRing, RingOf, skirt, waist
 from behaviours.estimators import ir_search, stereo_search
@@ -43,6 +44,7 @@ from behaviours.estimators.navigation import ArrivalSettings, NavigationGoal
 from behaviours.estimators.obstacles import DeadlockSettings, Obstacles
 from behaviours.estimators.patrol import Patrol, PatrolSettings
 from behaviours.estimators.perception import PerceptionSettings
+from behaviours.estimators.places import Places
 from behaviours.estimators.roaming import Roaming, RoamingSettings
 from behaviours.estimators.sensed import Sensed, SensedSettings
 from behaviours.estimators.stereo_search import StereoSearch, StereoSettings
@@ -229,6 +231,8 @@ _GAZE = _parameters(
 
 AHEAD = math.radians(50.0)
 """With commitment, only echoes within this of the heading slow the robot down: it goes along walls."""
+LANE = 0.1
+"""With places, a lane is clear with so much room [m] on either side of the hull."""
 _PRESET = Parameter("preset", "symbol", "", "paper", "All switches off (`paper`) or on (`modern`).")
 _SWITCHES = tuple(
     Parameter(name, "symbol", "", "preset", f"{doc} `on`, `off`, or as the `preset` has it.")
@@ -236,6 +240,7 @@ _SWITCHES = tuple(
         ("tracking", "What moves is followed, and the robot gives way to it in time."),
         ("commitment", "A group that stands is passed on one side until that has paid."),
         ("memory", "What stands is remembered in a grid instead of in circles that forget."),
+        ("places", "Where the robot has been is remembered, and dead ends are left by ways not tried."),
     )
 )
 _EVIDENCE = _parameters(
@@ -281,14 +286,17 @@ def _obstacles(values: Values, nat: NatSettings, ring_of: RingOf) -> Obstacles:
     circles = _settings(CircleSettings(), _CIRCLES, values)
     if isinstance(ring_of, LidarRing) and (perception.memory or perception.tracking):
         circles, ring_of = replace(circles, half_cone=0.0), LidarRing(nat.robot_width / 2, FINE)
+    deadlock = _settings(DeadlockSettings(), _DEADLOCK, values)
+    lane = PlacesSettings(half_width=nat.robot_width / 2 + LANE, speed=nat.max_speed or PlacesSettings().speed)
     return Obstacles(
         circles,
         nat,
-        _settings(DeadlockSettings(), _DEADLOCK, values),
+        deadlock,
         NAVIGATE,
         perception,
         CommitmentSettings() if _is_on("commitment", values) else None,
         ring_of,
+        Places(lane, deadlock.new_goal) if _is_on("places", values) else None,
     )
 
 

@@ -64,6 +64,12 @@ def commit(plan: NatPlan, locks: Locks, away: float, moving: Collection[int], se
     return after
 
 
+def were_reversed(before: Locks, after: Locks) -> bool:
+    """Whether a side was given up because it led too far."""
+    both = [(before[ident], lock) for ident, lock in after.items() if ident in before]
+    return any(old.followed == new.followed and new.detour > old.detour for old, new in both)
+
+
 def turned(group: Group, locks: Locks, away: float, settings: CommitmentSettings) -> Locks:
     """The locks after the robot has given up passing the group on this side."""
     lock = _lock_of(group, locks) or Lock(group.spin, away, settings.detour)

@@ -10,12 +10,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from behaviours.cores.circles import Circles, CircleSettings
-from behaviours.cores.commitment import CommitmentSettings, Locks, commit, inherit, turned
+from behaviours.cores.commitment import CommitmentSettings, Locks, commit, inherit, turned, were_reversed
 from behaviours.cores.geometry import distance
 from behaviours.cores.nat import Memory, NatPlan, NatSettings, contradicted, make_plan, opposite
 from behaviours.cores.sectors import RingOf, waist
 from behaviours.estimators.navigation import as_goal
 from behaviours.estimators.perception import Perception, PerceptionSettings
+from behaviours.estimators.places import Places
 from behaviours.interface import Channels, Pose, Reading, Report
 
 
@@ -33,7 +34,8 @@ class DeadlockSettings:
 class Obstacles:
     """The circles, and the latest plan among them.
 
-    driver: the competence whose lack of progress counts. commitment: None flips spins as the paper does.
+    driver: the competence whose lack of progress counts. commitment: None flips spins as the paper does. places: None
+    plans for the goal alone.
     """
 
     def __init__(
@@ -45,6 +47,7 @@ class Obstacles:
         perception: PerceptionSettings | None = None,
         commitment: CommitmentSettings | None = None,
         ring_of: RingOf = waist,
+        places: Places | None = None,
     ) -> None:
         self._nat, self._deadlock, self._commitment, self._ring_of = nat, deadlock, commitment, ring_of
         self.perception = Perception(circles, perception or PerceptionSettings())
@@ -52,6 +55,9 @@ class Obstacles:
         self._spins: Memory = {}
         self._locks: Locks = {}
         self._driver = driver
+        self.places = places
+        self._wanted: Pose | None = None
+        self._aim: Pose | None = None
         self._since: tuple[float, Pose] | None = None
 
     @property
@@ -66,17 +72,25 @@ class Obstacles:
         if ring is not None and fresh:
             self.perception.take(ring, pose, reading.stamp)
         goal = as_goal(channels)
-        if goal is None:
+        if fresh or goal != self._wanted:
+            self._wanted, self._aim = goal, self._aim_for(pose, goal, reading.stamp)
+        if self._aim is None:
             self._forget_plan()
-        elif fresh or self.plan is None or self.plan.goal != goal:
-            self._replan(pose, goal, reading.stamp)
+        elif fresh or self.plan is None or self.plan.goal != self._aim:
+            self._replan(pose, self._aim, reading.stamp)
         self._mind_progress(reading, self._driver in reports and goal is not None)
 
     def plan_to(self, pose: Pose, goal: Pose, now: float) -> NatPlan:
         """The plan from the robot to the goal at stamp now [s]: the latest one if that is its goal."""
+        if goal == self._wanted and self._aim is not None:
+            goal = self._aim
         if self.plan is not None and self.plan.goal == goal:
             return self.plan
         return self._make(pose, goal, now)
+
+    def _aim_for(self, pose: Pose, goal: Pose | None, now: float) -> Pose | None:
+        """What to plan for: the goal, or a way out of a dead end."""
+        return goal if self.places is None else self.places.aim(pose, goal, self.perception.circles, now)
 
     def _make(self, pose: Pose, goal: Pose, now: float) -> NatPlan:
         same = self.plan is not None and distance(self.plan.goal, goal) <= self._deadlock.new_goal
@@ -91,7 +105,10 @@ class Obstacles:
         self._spins = self.plan.spins()
         if self._commitment is not None:
             moving = self.perception.velocities()
-            self._locks = commit(self.plan, self._locks, distance(pose, goal), moving, self._commitment)
+            before = self._locks
+            self._locks = commit(self.plan, before, distance(pose, goal), moving, self._commitment)
+            if self.places is not None and goal == self._wanted and were_reversed(before, self._locks):
+                self.places.dead_end(pose)
             self._spins = inherit(self._spins, self._locks)
 
     def _forget_plan(self) -> None:
@@ -110,6 +127,8 @@ class Obstacles:
 
     def _turn_about(self, reading: Reading) -> None:
         group = contradicted(self.plan, self._nat) if self.plan is not None else None
+        if self.places is not None:
+            self.places.dead_end(reading.odometry.pose)
         if self.plan is None or group is None:
             return
         pose, goal = reading.odometry.pose, self.plan.goal
