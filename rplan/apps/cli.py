@@ -19,14 +19,17 @@ COMMANDS = {
     "export": "Make a table or a film of a recording.",
     "fmt": "Lay out the text of plans, comments and all.",
     "import": "Make a scenario of a world of another format.",
+    "inspect": "Show how a plan decides: table, goals, circuit, percepts.",
     "list": "List plans, libraries and what they offer.",
     "prove": "Prove what a plan promises, or show how it breaks it.",
     "repair": "Make a whole file of a recording that was cut short.",
+    "replay": "Make a page that plays a recording.",
     "reproduce": "Run the experiments of a paper again, its figures beside ours.",
     "simulate": "Drive a robot through a world by a plan.",
     "sweep": "Run many episodes of a plan and keep a row of each.",
     "test": "Run the tests that stand in a plan.",
     "tick": "Run a plan alone: percepts in, outputs out, one JSON object a line.",
+    "view": "Watch a plan while its simulation runs.",
     "ways": "List the ways of a plan; --paper counts them as the paper does.",
 }
 USED_WRONGLY = 2

@@ -1,0 +1,153 @@
+"""What a page is told of its plan: the circuit with its wires, and which goals lost and what stood against them.
+
+Takes: a compiled plan, and tick by tick inputs and registers. Gives: plain JSON values, and the `Telling` of a
+recording whose header has its plan. Leaves alone: how the page shows them (sim/replay.html).
+
+A tick's answer follows from inputs and registers alone, so it is found once for each pair of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from rplan.apps.drawing.inspect_circuit import MOST_GATES, tagged
+from rplan.apps.libraries import Catalogue
+from rplan.apps.wiring import compile_source
+from rplan.circuit.stats import stats
+from rplan.driver import Compiled
+from rplan.goals.condition import print_condition
+from rplan.goals.goal import Do, If, Or, PrioAnd, Reduced, walk
+from rplan.lang.diagnostic import PlanError
+from rplan.lang.source import Source
+from rplan.ways.way import label, taken_way
+from sim.recording import Json
+from sim.replay import Telling
+
+LOST = "lost"
+"""The run of a page that has what `Loser.lost` gives."""
+MOST_LOST = 60
+
+
+class Loser:
+    """Says for a tick which goals lost."""
+
+    def __init__(self, compiled: Compiled) -> None:
+        self._compiled = compiled
+        self._known: dict[tuple[str, str], list[Json]] = {}
+
+    def lost(self, inputs: str, registers: str) -> list[Json]:
+        """The goals that a tick turned away from, outermost only, in textual order; bits as recordings have them.
+
+        {"goal", "rule", "line", "acts", "condition", "holds", "because"}: `condition` is what an `if` asked, `because`
+        why a member of a `prio-and` was given up; one of them is "". What sets nothing is left out.
+        """
+        key = (inputs, registers)
+        if key not in self._known:
+            self._known[key] = list(self._lost(_bits(inputs), _bits(registers)))[:MOST_LOST]
+        return self._known[key]
+
+    def tick(self, plan: Json) -> Json:
+        """For the plan's part of a recorded tick."""
+        inputs, registers = plan.get("inputs"), plan.get("registers", "")
+        if not isinstance(inputs, str) or not isinstance(registers, str):
+            return {}
+        return {LOST: self.lost(inputs, registers)}
+
+    def _lost(self, inputs: list[bool], registers: list[bool]) -> Iterator[Json]:
+        ways = self._compiled.ways
+        atoms = (*inputs, *(False for _ in ways.atoms[len(inputs) :]))
+        every = (*registers, *(False for _ in ways.registers[len(registers) :]))
+        values = ways.guards.evaluate(atoms, every)
+        way = taken_way(ways, inputs, registers)
+        because = {given.span: given.because for given in way.given_up}
+        for node in ways.layout.nodes[1:]:
+            parent = ways.layout.nodes[node.parent]
+            if values[ways.reached[node.number]] or not values[ways.reached[parent.number]]:
+                continue
+            acts = [f"{do.output} := {do.value.text}" for do in walk(node.goal) if isinstance(do, Do)]
+            if not acts:
+                continue
+            told: dict[str, object] = {
+                "goal": label(node.goal),
+                "rule": self._rule(parent.number),
+                "line": self._line(node.number),
+                "acts": list(dict.fromkeys(acts)),
+                "condition": "",
+                "holds": False,
+                "because": "",
+            }
+            match parent.goal:
+                case If(condition=condition):
+                    told |= {"condition": print_condition(condition), "holds": values[ways.asked[parent.number]]}
+                case PrioAnd():
+                    told["because"] = because.get(node.goal.span, "what comes before it leaves it no way")
+                case Or():
+                    told["because"] = "another alternative is taken"
+                case _:
+                    continue
+            yield told
+
+    def _rule(self, number: int) -> str:
+        """The rule that a place is in; "the top goal" outside of all."""
+        nodes = self._compiled.ways.layout.nodes
+        while number >= 0:
+            goal = nodes[number].goal
+            if isinstance(goal, Reduced):
+                return goal.head
+            number = nodes[number].parent
+        return "the top goal"
+
+    def _line(self, number: int) -> int | None:
+        span = self._compiled.ways.layout.nodes[number].goal.span
+        return span.line if span.file == self._compiled.source.name else None
+
+
+def _bits(text: str) -> list[bool]:
+    return [bit == "1" for bit in text]
+
+
+def circuit(compiled: Compiled) -> Json:
+    """{"stats", "svg", "cells": [[operation, operands or index …] …]}; svg is "" where it would be too large."""
+    costs, made = stats(compiled.circuit), compiled.circuit
+    cells = [[c.op.value, *(c.operands or (c.index,))] for c in made.cells]
+    return {
+        "stats": {"gates": costs.gates, "depth": costs.depth, "registers": costs.registers, "operations": costs.operations},
+        "svg": tagged(made) if costs.gates <= MOST_GATES else "",
+        "cells": cells if costs.gates <= MOST_GATES else [],
+    }
+
+
+def telling_of(compiled: Compiled) -> Telling:
+    """What the page of a run of this plan is told."""
+    return Telling({"circuit": circuit(compiled)}, Loser(compiled).tick)
+
+
+def telling(header: Json, libraries: Catalogue | None = None) -> tuple[Telling | None, str]:
+    """What the page of a recording is told, or why nothing can be; the plan's text is compiled again."""
+    plan = header.get("plan")
+    if not isinstance(plan, Mapping) or not isinstance(plan.get("text"), str):
+        return None, "no plan stands in its header"
+    included = plan.get("included")
+    texts = _texts(included if isinstance(included, Sequence) else ())
+
+    def open_file(path: str) -> Source:
+        name = path.replace("\\", "/").rpartition("/")[2]
+        if name not in texts:
+            raise FileNotFoundError(2, "it is not in the recording", path)
+        return Source(path, texts[name])
+
+    try:
+        source = Source(str(plan.get("file", "plan.rplan")), plan["text"])
+        compiled = compile_source(source, allow_holes=True, open_file=open_file, libraries=libraries)
+    except PlanError as error:
+        return None, f"its plan does not compile with the libraries at hand ({error.diagnostics[0].message})"
+    inputs = [atom.text for atom in compiled.ways.atoms[: compiled.ways.asking]]
+    if inputs != plan.get("inputs"):
+        return None, "this rplan reads its plan otherwise than the one that recorded it"
+    return telling_of(compiled), ""
+
+
+def _texts(included: Sequence[object]) -> dict[str, str]:
+    """File name -> text of what a recorded plan includes."""
+    found = (one for one in included if isinstance(one, Mapping))
+    return {str(one.get("file", "")): str(one.get("text", "")) for one in found}
