@@ -1,0 +1,194 @@
+"""Why a tick did what it did.
+
+Takes: `Ways`, the values of its atoms and registers in one tick. Gives: `Why`: the way taken, the smallest set of
+literals that alone make for its outputs, what of the past matters, every goal that lost. Leaves alone: what would have
+made it otherwise; see why_not.py.
+
+A set of literals is enough if, with the registers as they were, no tick that can be (numbers exact, assumptions kept)
+has these literals and other outputs. The smallest one hits every set of literals whose change together changes the
+outputs: hitting sets and such changes are found by turns, until a hitting set is enough. That is the implicit hitting
+set method (Moreno-Centeno and Karp 2013, Ignatiev et al. 2015).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import z3
+
+from rplan.goals.condition import Percept
+from rplan.ways.kept import Kept, Literal, kept, kept_by
+from rplan.ways.lost import Lost, lost
+from rplan.ways.reduce import Ways
+from rplan.ways.situations import Unrolling, negated
+from rplan.ways.way import TakenWay, taken_way
+
+MOST_ROUNDS = 400
+"""Hitting sets that are tried before any set from which nothing can be left out is taken."""
+
+
+@dataclass(frozen=True, slots=True)
+class Why:
+    """literals: enough for these outputs, in the order of the plan's inputs; smallest: and no fewer are enough.
+
+    Where `smallest` is false none of them can be left out. kept: the conditions with memory that matter besides, as
+    they stood before the tick; none of them can be left out.
+    """
+
+    way: TakenWay
+    literals: tuple[Literal, ...]
+    smallest: bool
+    kept: tuple[Kept, ...]
+    lost: tuple[Lost, ...]
+
+
+class Reasons:
+    """Asks about many ticks of one plan."""
+
+    def __init__(self, ways: Ways) -> None:
+        self.ways = ways
+        self.unrolling = Unrolling(ways, first=False)
+        self.solver = self.unrolling.solver
+        self._atoms = [atom_literal(self.unrolling, number) for number in range(ways.asking)]
+        guards = (ways.hole, *(guard for values in ways.sets.values() for guard in values.values()))
+        self._outputs = [self.unrolling.literal(0, guard) for guard in guards]
+        self._guards = guards
+        self._registers = [self.unrolling.register(0, number) for number in range(ways.driving)]
+        self._assumed = self.unrolling.assumed(1)
+
+    def why(self, atoms: Sequence[bool], registers: Sequence[bool]) -> Why:
+        """Why the plan does what it does where its driving atoms and registers have these values."""
+        way = taken_way(self.ways, atoms, registers)
+        literals, smallest, texts = self._enough(atoms, registers)
+        return Why(
+            way,
+            tuple(Literal(self.ways.atoms[number].text, atoms[number]) for number in literals),
+            smallest,
+            tuple(kept(self.ways, text, registers) for text in texts),
+            lost(self.ways, way, atoms, registers),
+        )
+
+    def _enough(self, atoms: Sequence[bool], registers: Sequence[bool]) -> tuple[list[int], bool, list[str]]:
+        every = (*atoms, *(False for _ in self.ways.atoms[len(atoms) :]))
+        held = (*registers, *(False for _ in self.ways.registers[len(registers) :]))
+        values = self.ways.guards.evaluate(every, held)
+        wanted = [_as(one, value) for one, value in zip(self._atoms, atoms, strict=True)]
+        past = [_as(one, value) for one, value in zip(self._registers, registers, strict=True)]
+        other = z3.Or([_as(one, not values[guard]) for one, guard in zip(self._outputs, self._guards, strict=True)])
+        assumed = self._assumed
+        if self.solver.check(*wanted, *past, *assumed) != z3.sat:
+            assumed = []
+        if self.solver.check(*wanted, *past) != z3.sat:
+            return [*range(len(atoms))], False, [*kept_by(self.ways)]
+        self.solver.push()
+        self.solver.add(*assumed, other)
+        try:
+            literals, smallest = _Smallest(self.solver, wanted, past).search()
+            return literals, smallest, self._texts([wanted[number] for number in literals], past)
+        finally:
+            self.solver.pop()
+
+    def _texts(self, literals: list[z3.BoolRef], past: list[z3.BoolRef]) -> list[str]:
+        """The conditions with memory that cannot be left out; of two that stand for each other the first stays."""
+        left = dict(kept_by(self.ways))
+        for text in reversed([*left]):
+            without = [past[number] for other, numbers in left.items() if other != text for number in numbers]
+            if self.solver.check(*literals, *without) == z3.unsat:
+                del left[text]
+        return [*left]
+
+
+class _Smallest:
+    """The smallest set of literals that leaves nothing to a solver, the first in order of those as small."""
+
+    def __init__(self, solver: z3.Solver, wanted: list[z3.BoolRef], always: list[z3.BoolRef]) -> None:
+        self._solver, self._wanted, self._always = solver, wanted, always
+        self._hitting = z3.SimpleSolver(ctx=solver.ctx)
+        self._chosen = [z3.Bool(f"chosen {number}", solver.ctx) for number in range(len(wanted))]
+        self._most = 0
+        self._rounds = 0
+
+    def search(self) -> tuple[list[int], bool]:
+        try:
+            return self._search(), True
+        except _TooLongError:
+            return self._irreducible(), False
+
+    def _search(self) -> list[int]:
+        found = self._with([])
+        while found is None:
+            self._most += 1
+            found = self._with([])
+        sure: list[z3.BoolRef] = []
+        for number, one in enumerate(self._chosen):
+            better = found if number in found else self._with([*sure, one])
+            found = better or found
+            sure.append(one if better is not None else negated(one))
+        return found
+
+    def _with(self, sure: list[z3.BoolRef]) -> list[int] | None:
+        """A set of at most so many literals that is enough; None if there is none."""
+        limit = z3.PbLe([(one, 1) for one in self._chosen], self._most) if self._chosen else z3.BoolVal(True)
+        self._hitting.push()
+        self._hitting.add(limit, *sure)
+        found: list[int] | None = None
+        learned = []
+        while found is None and self._hitting.check() == z3.sat:
+            model = self._hitting.model()
+            tried = [n for n, one in enumerate(self._chosen) if z3.is_true(model.eval(one))]
+            change = self._change(tried)
+            if change is None:
+                found = tried
+            else:
+                learned.append(z3.Or([self._chosen[number] for number in change]))
+                self._hitting.add(learned[-1])
+        self._hitting.pop()
+        self._hitting.add(*learned)
+        return found
+
+    def _change(self, fixed: list[int]) -> list[int] | None:
+        """Literals whose change makes it otherwise with these fixed, none of them for nothing; None: nothing does."""
+        self._rounds += 1
+        if self._rounds > MOST_ROUNDS:
+            raise _TooLongError
+        agreeing = self._otherwise(fixed)
+        if agreeing is None:
+            return None
+        for number in range(len(self._wanted)):
+            if number not in agreeing:
+                agreeing = self._otherwise([*agreeing, number]) or agreeing
+        return [number for number in range(len(self._wanted)) if number not in agreeing]
+
+    def _otherwise(self, fixed: list[int]) -> list[int] | None:
+        """The literals that hold in some tick in which these hold and the outputs are others."""
+        answer = self._solver.check(*self._always, *(self._wanted[number] for number in fixed))
+        if answer == z3.unknown:
+            raise _TooLongError
+        if answer == z3.unsat:
+            return None
+        model = self._solver.model()
+        return [n for n, one in enumerate(self._wanted) if z3.is_true(model.eval(one, model_completion=True))]
+
+    def _irreducible(self) -> list[int]:
+        """Every literal whose loss is not shown to be none is kept."""
+        left = [*range(len(self._wanted))]
+        for number in reversed(range(len(self._wanted))):
+            without = [self._wanted[one] for one in left if one != number]
+            if self._solver.check(*self._always, *without) == z3.unsat:
+                left.remove(number)
+        return left
+
+
+class _TooLongError(Exception):
+    """Too many rounds, or one that is too hard."""
+
+
+def atom_literal(unrolling: Unrolling, number: int) -> z3.BoolRef:
+    """The literal of an atom in the tick that is asked about."""
+    atom = unrolling.ways.atoms[number]
+    return unrolling.symbol(0, atom.text) if isinstance(atom, Percept) else unrolling.comparison(0, number)
+
+
+def _as(literal: z3.BoolRef, value: bool) -> z3.BoolRef:
+    return literal if value else negated(literal)
