@@ -31,6 +31,8 @@ COMMANDS = {
     "tick": "Run a plan alone: percepts in, outputs out, one JSON object a line.",
     "view": "Watch a plan while its simulation runs.",
     "ways": "List the ways of a plan; --paper counts them as the paper does.",
+    "why": "Say why a tick did what it did, and what lost.",
+    "why-not": "Say what would have made a tick do otherwise.",
 }
 USED_WRONGLY = 2
 INTERNAL = 70
@@ -45,7 +47,7 @@ class Commands(click.Group):
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:  # noqa: ARG002
         if name not in COMMANDS:
             return None
-        command = import_module(f"rplan.apps.commands.{name}{'_' if iskeyword(name) else ''}").command
+        command = import_module(f"rplan.apps.commands.{name.replace('-', '_')}{'_' if iskeyword(name) else ''}").command
         assert isinstance(command, click.Command)
         return command
 

@@ -73,12 +73,10 @@ class _Looking:
 
     def _unserved(self, node: Node) -> Lost:
         """Blocked where the way leaves the path to it."""
-        outermost, part_of = node, ""
+        outermost = node
         while outermost.parent >= 0 and not self.served[outermost.parent]:
             outermost = self.nodes[outermost.parent]
-            if isinstance(outermost.goal, Reduced):
-                part_of = outermost.goal.head
-        goal = label(node.goal)
+        goal, part_of = label(node.goal), self._part_of(node)
         if outermost.parent < 0:
             return Lost(goal, "hole", "no way is open", "", (), "", node.goal.span, node.goal.span)
         parent = self.nodes[outermost.parent]
@@ -96,6 +94,15 @@ class _Looking:
                 assert isinstance(parent.goal, PrioAnd)
                 because, by = self.because[outermost.number], self._against(outermost)
                 return Lost(goal, "conflict", because, "", (), part_of, node.goal.span, by)
+
+    def _part_of(self, node: Node) -> str:
+        """The outermost rule around it that is not served or does nothing."""
+        found, here = "", node
+        while here.parent >= 0:
+            here = self.nodes[here.parent]
+            if isinstance(here.goal, Reduced) and not self._does_something(here.number):
+                found = here.goal.head
+        return found
 
     def _against(self, member: Node) -> Span:
         """The act that a member does not go together with, else the member itself."""
@@ -126,8 +133,8 @@ class _Looking:
         words = f"already satisfied: {said(literals)}" if literals else "already satisfied: it asks for nothing"
         condition = print_condition(conditions[0].condition) if len(conditions) == 1 else ""
         by = conditions[0].span if conditions else node.goal.span
-        head = label(node.goal)
-        return Lost(head, "satisfied", words, condition, literals, "", node.goal.span, by)
+        part_of = self._part_of(node)
+        return Lost(label(node.goal), "satisfied", words, condition, literals, part_of, node.goal.span, by)
 
     def _last_ifs(self, number: int, asked: int | None) -> list[int]:
         """The innermost `if`s above the places that are served by nothing."""

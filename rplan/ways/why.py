@@ -18,6 +18,8 @@ from dataclasses import dataclass
 import z3
 
 from rplan.goals.condition import Percept
+from rplan.goals.goal import Reduced
+from rplan.lang.source import Span
 from rplan.ways.kept import Kept, Literal, kept, kept_by
 from rplan.ways.lost import Lost, lost
 from rplan.ways.reduce import Ways
@@ -29,14 +31,23 @@ MOST_ROUNDS = 400
 
 
 @dataclass(frozen=True, slots=True)
+class Served:
+    """A rule that the way serves. span: where the rule stands."""
+
+    head: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
 class Why:
-    """literals: enough for these outputs, in the order of the plan's inputs; smallest: and no fewer are enough.
+    """served: its rules in textual order, each once. literals: enough for these outputs, in the order of the plan's inputs; smallest: and no fewer are enough.
 
     Where `smallest` is false none of them can be left out. kept: the conditions with memory that matter besides, as
     they stood before the tick; none of them can be left out.
     """
 
     way: TakenWay
+    served: tuple[Served, ...]
     literals: tuple[Literal, ...]
     smallest: bool
     kept: tuple[Kept, ...]
@@ -63,11 +74,19 @@ class Reasons:
         literals, smallest, texts = self._enough(atoms, registers)
         return Why(
             way,
+            self._served(way),
             tuple(Literal(self.ways.atoms[number].text, atoms[number]) for number in literals),
             smallest,
             tuple(kept(self.ways, text, registers) for text in texts),
             lost(self.ways, way, atoms, registers),
         )
+
+    def _served(self, way: TakenWay) -> tuple[Served, ...]:
+        places: dict[str, Span] = {}
+        for node in self.ways.layout.nodes:
+            if isinstance(node.goal, Reduced):
+                places.setdefault(node.goal.head, node.goal.rule_span)
+        return tuple(Served(head, places[head]) for head in way.rules)
 
     def _enough(self, atoms: Sequence[bool], registers: Sequence[bool]) -> tuple[list[int], bool, list[str]]:
         every = (*atoms, *(False for _ in self.ways.atoms[len(atoms) :]))
