@@ -1,0 +1,80 @@
+"""The plans of one pytest run.
+
+Takes: paths of plans. Gives: each compiled once, with the ticks that tests took with it. Leaves alone: what is tested.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+from rplan.apps.libraries import catalogue
+from rplan.apps.testing import PlanUnderTest
+from rplan.apps.trying import Watch
+from rplan.apps.wiring import compile_file
+from rplan.driver import Compiled
+from rplan.lang.diagnostic import Diagnostic, PlanError, render
+from rplan.runtime.tick import Decision
+from rplan.ways.checks.branches import check_branches
+from rplan.ways.forks import Fork, forks
+from rplan.ways.reach import Reach
+from rplan.ways.tally import Ticks
+
+
+@dataclass
+class Plan:
+    """A compiled plan, what has been proven of it, and the ticks that were seen of it."""
+
+    compiled: Compiled
+    ticks: Ticks = field(default_factory=dict)
+
+    def watch(self, decision: Decision) -> None:
+        """Count a tick."""
+        key = (decision.inputs, decision.registers)
+        self.ticks[key] = self.ticks.get(key, 0) + 1
+
+    @cached_property
+    def reach(self) -> Reach:
+        return Reach(self.compiled.ways)
+
+    @cached_property
+    def forks(self) -> tuple[Fork, ...]:
+        return forks(self.compiled.ways)
+
+    @cached_property
+    def never(self) -> tuple[Diagnostic, ...]:
+        """Why parts of it are never reached."""
+        return tuple(check_branches(self.reach))
+
+
+class Shelf:
+    """Plans by path. A plan that is edited during a run is the one that was read first."""
+
+    def __init__(self, library_files: Iterable[Path] = ()) -> None:
+        self.libraries = catalogue(library_files)
+        self.plans: dict[Path, Plan] = {}
+        self.substitutes: Mapping[Path, Compiled] = {}
+
+    def plan(self, path: Path) -> Plan:
+        """The plan in a file, holes allowed; `PlanError`, `OSError`."""
+        known = path.resolve()
+        if known not in self.plans:
+            self.plans[known] = Plan(compile_file(path, allow_holes=True, libraries=self.libraries))
+        return self.plans[known]
+
+    def under_test(self, path: Path) -> PlanUnderTest:
+        """A plan for a test in Python; what stands in `substitutes` takes its place."""
+        known = path.resolve()
+        if known in self.substitutes:
+            return PlanUnderTest(self.substitutes[known], self.libraries)
+        plan = self.plan(path)
+        watch: Watch = plan.watch
+        return PlanUnderTest(plan.compiled, self.libraries, watch)
+
+
+def rendered(error: PlanError) -> str:
+    """Everything that is wrong with a plan."""
+    every = [render(one, error.texts) for one in error.diagnostics if one.severity == "error"]
+    return "\n\n".join(every or [render(one, error.texts) for one in error.diagnostics])
