@@ -192,6 +192,16 @@ class Packing:
         self.tracks.setdefault("scan", Track(CENTI)).add(index, ranges)
         self._due = reading.stamp + SCAN_S - 1e-6
 
+    def last(self) -> Json:
+        """What the last tick and its reading added: {"t" [ms], "tracks": name -> row, "runs": name -> value, "rays"}."""
+        index = len(self.milliseconds) - 1
+        return {
+            "t": self.milliseconds[index],
+            "tracks": {name: one.rows[-1] for name, one in self.tracks.items() if one.at and one.at[-1] == index},
+            "runs": {name: _rounded(one.last) for name, one in self.runs.items() if one.at and one.at[-1] == index},
+            "rays": self.rays,
+        }
+
     def packed(self) -> dict[str, object]:
         """{"rays", "ticks", "t" [ms], "tracks", "runs"}."""
         return {

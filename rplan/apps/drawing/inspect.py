@@ -142,7 +142,9 @@ def _names(circuit: Circuit) -> dict[Variable, str]:
     return inputs | {(Op.REGISTER, n): f"register {one.name}" for n, one in enumerate(circuit.registers)}
 
 
-def _paths(tree: Tree, before: tuple[tuple[Variable, bool], ...]) -> Iterator[tuple[tuple[tuple[Variable, bool], ...], Leaf]]:
+def _paths(
+    tree: Tree, before: tuple[tuple[Variable, bool], ...]
+) -> Iterator[tuple[tuple[tuple[Variable, bool], ...], Leaf]]:
     if isinstance(tree, Leaf):
         yield before, tree
         return

@@ -34,6 +34,9 @@ class Loser:
     def __init__(self, compiled: Compiled) -> None:
         self._compiled = compiled
         self._known: dict[tuple[str, str], list[Json]] = {}
+        self._fired: dict[tuple[str, str], tuple[str, ...]] = {}
+        heads = (node.goal.head for node in compiled.ways.layout.nodes if isinstance(node.goal, Reduced))
+        self.heads: tuple[str, ...] = tuple(dict.fromkeys(heads))
 
     def lost(self, inputs: str, registers: str) -> list[Json]:
         """The goals that a tick turned away from, outermost only, in textual order; bits as recordings have them.
@@ -53,11 +56,34 @@ class Loser:
             return {}
         return {LOST: self.lost(inputs, registers)}
 
-    def _lost(self, inputs: list[bool], registers: list[bool]) -> Iterator[Json]:
+    def firing(self, inputs: str, registers: str) -> tuple[str, ...]:
+        """The rules that set something in a tick, themselves or by their subgoals, each once."""
+        key = (inputs, registers)
+        if key not in self._fired:
+            values = self._values(_bits(inputs), _bits(registers))
+            ways = self._compiled.ways
+            acting = [n for n in ways.layout.nodes if isinstance(n.goal, Do) and values[ways.reached[n.number]]]
+            self._fired[key] = tuple(dict.fromkeys(head for node in acting for head in self._above(node.number)))
+        return self._fired[key]
+
+    def _above(self, number: int) -> Iterator[str]:
+        """The rules that a place is in, innermost first."""
+        nodes = self._compiled.ways.layout.nodes
+        while number >= 0:
+            goal = nodes[number].goal
+            if isinstance(goal, Reduced):
+                yield goal.head
+            number = nodes[number].parent
+
+    def _values(self, inputs: list[bool], registers: list[bool]) -> list[bool]:
         ways = self._compiled.ways
         atoms = (*inputs, *(False for _ in ways.atoms[len(inputs) :]))
         every = (*registers, *(False for _ in ways.registers[len(registers) :]))
-        values = ways.guards.evaluate(atoms, every)
+        return ways.guards.evaluate(atoms, every)
+
+    def _lost(self, inputs: list[bool], registers: list[bool]) -> Iterator[Json]:
+        ways = self._compiled.ways
+        values = self._values(inputs, registers)
         way = taken_way(ways, inputs, registers)
         because = {given.span: given.because for given in way.given_up}
         for node in ways.layout.nodes[1:]:
@@ -89,13 +115,7 @@ class Loser:
 
     def _rule(self, number: int) -> str:
         """The rule that a place is in; "the top goal" outside of all."""
-        nodes = self._compiled.ways.layout.nodes
-        while number >= 0:
-            goal = nodes[number].goal
-            if isinstance(goal, Reduced):
-                return goal.head
-            number = nodes[number].parent
-        return "the top goal"
+        return next(self._above(number), "the top goal")
 
     def _line(self, number: int) -> int | None:
         span = self._compiled.ways.layout.nodes[number].goal.span
@@ -111,7 +131,12 @@ def circuit(compiled: Compiled) -> Json:
     costs, made = stats(compiled.circuit), compiled.circuit
     cells = [[c.op.value, *(c.operands or (c.index,))] for c in made.cells]
     return {
-        "stats": {"gates": costs.gates, "depth": costs.depth, "registers": costs.registers, "operations": costs.operations},
+        "stats": {
+            "gates": costs.gates,
+            "depth": costs.depth,
+            "registers": costs.registers,
+            "operations": costs.operations,
+        },
         "svg": tagged(made) if costs.gates <= MOST_GATES else "",
         "cells": cells if costs.gates <= MOST_GATES else [],
     }
