@@ -56,6 +56,7 @@ class Shelf:
         self.libraries = catalogue(library_files)
         self.plans: dict[Path, Plan] = {}
         self.substitutes: Mapping[Path, Compiled] = {}
+        self.opened: dict[Path, None] = {}
 
     def plan(self, path: Path) -> Plan:
         """The plan in a file, holes allowed; `PlanError`, `OSError`."""
@@ -67,6 +68,7 @@ class Shelf:
     def under_test(self, path: Path) -> PlanUnderTest:
         """A plan for a test in Python; what stands in `substitutes` takes its place."""
         known = path.resolve()
+        self.opened[known] = None
         if known in self.substitutes:
             return PlanUnderTest(self.substitutes[known], self.libraries)
         plan = self.plan(path)
