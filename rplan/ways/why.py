@@ -40,10 +40,11 @@ class Served:
 
 @dataclass(frozen=True, slots=True)
 class Why:
-    """served: its rules in textual order, each once. literals: enough for these outputs, in the order of the plan's inputs; smallest: and no fewer are enough.
+    """served: the rules of the way in textual order, each once.
 
-    Where `smallest` is false none of them can be left out. kept: the conditions with memory that matter besides, as
-    they stood before the tick; none of them can be left out.
+    literals: enough for these outputs, in the order of the plan's inputs; smallest: and no fewer are enough. Where it
+    is false, none of them can be left out. kept: the conditions with memory that matter besides, as they stood before
+    the tick; none of them can be left out.
     """
 
     way: TakenWay
@@ -148,7 +149,7 @@ class _Smallest:
 
     def _with(self, sure: list[z3.BoolRef]) -> list[int] | None:
         """A set of at most so many literals that is enough; None if there is none."""
-        limit = z3.PbLe([(one, 1) for one in self._chosen], self._most) if self._chosen else z3.BoolVal(True)
+        limit = z3.PbLe([(one, 1) for one in self._chosen], self._most) if self._chosen else z3.BoolVal(True, self._solver.ctx)
         self._hitting.push()
         self._hitting.add(limit, *sure)
         found: list[int] | None = None
