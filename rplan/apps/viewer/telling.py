@@ -15,11 +15,11 @@ from rplan.apps.libraries import Catalogue
 from rplan.apps.wiring import compile_source
 from rplan.circuit.stats import stats
 from rplan.driver import Compiled
-from rplan.goals.condition import print_condition
-from rplan.goals.goal import Do, If, Or, PrioAnd, Reduced, walk
+from rplan.goals.goal import Do, Reduced
 from rplan.lang.diagnostic import PlanError
 from rplan.lang.source import Source
-from rplan.ways.way import label, taken_way
+from rplan.ways.lost import lost
+from rplan.ways.way import taken_way
 from sim.recording import Json
 from sim.replay import Telling
 
@@ -39,10 +39,9 @@ class Loser:
         self.heads: tuple[str, ...] = tuple(dict.fromkeys(heads))
 
     def lost(self, inputs: str, registers: str) -> list[Json]:
-        """The goals that a tick turned away from, outermost only, in textual order; bits as recordings have them.
+        """The goals that set nothing in a tick, in textual order, without the parts of those that lost as a whole.
 
-        {"goal", "rule", "line", "acts", "condition", "holds", "because"}: `condition` is what an `if` asked, `because`
-        why a member of a `prio-and` was given up; one of them is "". What sets nothing is left out.
+        {"goal", "because", "reason", "line"}; bits as recordings have them. See rplan/ways/lost.py.
         """
         key = (inputs, registers)
         if key not in self._known:
@@ -83,43 +82,11 @@ class Loser:
 
     def _lost(self, inputs: list[bool], registers: list[bool]) -> Iterator[Json]:
         ways = self._compiled.ways
-        values = self._values(inputs, registers)
         way = taken_way(ways, inputs, registers)
-        because = {given.span: given.because for given in way.given_up}
-        for node in ways.layout.nodes[1:]:
-            parent = ways.layout.nodes[node.parent]
-            if values[ways.reached[node.number]] or not values[ways.reached[parent.number]]:
-                continue
-            acts = [f"{do.output} := {do.value.text}" for do in walk(node.goal) if isinstance(do, Do)]
-            if not acts:
-                continue
-            told: dict[str, object] = {
-                "goal": label(node.goal),
-                "rule": self._rule(parent.number),
-                "line": self._line(node.number),
-                "acts": list(dict.fromkeys(acts)),
-                "condition": "",
-                "holds": False,
-                "because": "",
-            }
-            match parent.goal:
-                case If(condition=condition):
-                    told |= {"condition": print_condition(condition), "holds": values[ways.asked[parent.number]]}
-                case PrioAnd():
-                    told["because"] = because.get(node.goal.span, "what comes before it leaves it no way")
-                case Or():
-                    told["because"] = "another alternative is taken"
-                case _:
-                    continue
-            yield told
-
-    def _rule(self, number: int) -> str:
-        """The rule that a place is in; "the top goal" outside of all."""
-        return next(self._above(number), "the top goal")
-
-    def _line(self, number: int) -> int | None:
-        span = self._compiled.ways.layout.nodes[number].goal.span
-        return span.line if span.file == self._compiled.source.name else None
+        for one in () if way.hole else lost(ways, way, inputs, registers):
+            if not one.part_of:
+                line = one.span.line if one.span.file == self._compiled.source.name else None
+                yield {"goal": one.goal, "because": one.because, "reason": one.reason, "line": line}
 
 
 def _bits(text: str) -> list[bool]:
