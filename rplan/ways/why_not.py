@@ -71,7 +71,8 @@ class WhyNot:
     """verdict: `already`, it happens; `percepts`, `changes` make it happen; `kept`, no percepts can, but with `past`
     they could; `never`, no tick of the plan does it; `undecided`, it was too hard to say.
 
-    atoms, registers: the tick that does it, and way its way; None where there is none.
+    past: empty for `kept` where no past was found that can have been. atoms, registers: the tick that does it, and way
+    its way; None where there is none.
     """
 
     verdict: Verdict
@@ -157,7 +158,7 @@ class _Search:
         self.asked, self.ways, self.unrolling = asked, asked.ways, asked.unrolling
         self.solver = asked._solver
         self.atoms, self.registers, self.values = atoms, registers, values
-        self.past = [_as(one, value) for one, value in zip(asked._registers, registers, strict=True)]
+        self.past = self._past_as(registers)
         self.was = self._as_they_were()
         self.changed = {text: self._changed(text) for text in asked._percepts}
         self.turned: dict[str, z3.BoolRef] = {}
@@ -293,14 +294,13 @@ class _Search:
             model = self.solver.model()
             registers = tuple(z3.is_true(model.eval(one, model_completion=True)) for one in self.asked._registers)
             if self._can_have_been(reach, registers):
-                past = [_as(one, value) for one, value in zip(self.asked._registers, registers, strict=True)]
-                self.solver.add(*past)
+                self.solver.add(*self._past_as(registers))
                 return self._found("kept", registers, self._past(registers))
             self.solver.pop()
-            self.solver.add(z3.Or(self._unlike(registers)))
+            self.solver.add(z3.Or([negated(one) for one in self._past_as(registers)]))
             if not self._possible():
                 break
-        return WhyNot("undecided")
+        return WhyNot("kept")
 
     def _name_pasts(self) -> None:
         for text, numbers in kept_by(self.ways).items():
@@ -323,17 +323,12 @@ class _Search:
         return questions
 
     def _can_have_been(self, reach: Reach, registers: tuple[bool, ...]) -> bool:
-        """Whether some tick does it in which what has turned is so, or that is not decided."""
-        turned = tuple((self._guard(number), registers[number]) for number in self._turned(registers))
-        return any(reach.first_tick(*question, *turned) is not None for question in self._questions())
+        """Whether some tick does it with these registers, or that is not decided."""
+        state = tuple((self._guard(number), value) for number, value in enumerate(registers))
+        return any(reach.first_tick(*question, *state) is not None for question in self._questions())
 
-    def _turned(self, registers: tuple[bool, ...]) -> list[int]:
-        """The registers of the conditions that would have to have been otherwise."""
-        every = kept_by(self.ways).values()
-        return [n for numbers in every if any(registers[k] != self.registers[k] for k in numbers) for n in numbers]
-
-    def _unlike(self, registers: tuple[bool, ...]) -> list[z3.BoolRef]:
-        return [_as(self.asked._registers[n], not registers[n]) for n in self._turned(registers)]
+    def _past_as(self, registers: tuple[bool, ...]) -> list[z3.BoolRef]:
+        return [_as(one, value) for one, value in zip(self.asked._registers, registers, strict=True)]
 
     def _guard(self, register: int) -> int:
         node: Node = ("register", register, register)

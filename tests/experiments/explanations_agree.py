@@ -42,7 +42,9 @@ def main() -> int:
         if said:
             print(f"plan {plans} differs: {said}\n{text}{tick.values}")
             return 1
-        verdicts.update(Changes(trial.ways, one).why_not(tick.atoms, tick.registers).verdict for one in wishes(trial.ways))
+        verdicts.update(
+            Changes(trial.ways, one).why_not(tick.atoms, tick.registers).verdict for one in wishes(trial.ways)
+        )
         ticks += 1
     print(f"{plans:,} plans, a tick of each: every `why` and every `why-not` is as the reference says")
     print("why-not: " + ", ".join(f"{count:,} {verdict}" for verdict, count in sorted(verdicts.items())))

@@ -24,7 +24,16 @@ from rplan.ways.situations import atom_value
 from rplan.ways.why import Reasons, Why
 from rplan.ways.why_not import Changes, Wanted, WhyNot
 
-ATOMS = ("alpha", "beta", "gamma", "(< near 1m)", "(>= near 2.5m)", "(< near far)", "(= far 1m)", "(> (+ near far) 4m)")
+ATOMS = (
+    "alpha",
+    "beta",
+    "gamma",
+    "(< near 1m)",
+    "(>= near 2.5m)",
+    "(< near far)",
+    "(= far 1m)",
+    "(> (+ near far) 3.9m)",
+)
 REAL = (0.25, 1.0, 1.75, 2.5, 3.25)
 """Numbers that a tick may have."""
 EVERY = tuple(n / 4 - 1 for n in range(25))
@@ -126,7 +135,9 @@ def differs(trial: Trial, tick: Tick) -> str:
     said = wrong_why(trial, tick, why, can_be if trial.assumed(tick.atoms) else real)
     for wanted in wishes(trial.ways):
         known = Changes(trial.ways, wanted).why_not(tick.atoms, tick.registers, tick.values)
-        said = said or wrong_change(trial, tick, wanted, known, smallest_of(trial, [tick.values], every, can_be, wanted))
+        said = said or wrong_change(
+            trial, tick, wanted, known, smallest_of(trial, [tick.values], every, can_be, wanted)
+        )
         like = [values for values, atoms in every if atoms == tick.atoms]
         unknown = Changes(trial.ways, wanted).why_not(tick.atoms, tick.registers)
         said = said or wrong_change(trial, tick, wanted, unknown, smallest_of(trial, like, every, can_be, wanted))
@@ -190,8 +201,10 @@ def wrong_change(trial: Trial, tick: Tick, wanted: Wanted, found: WhyNot, best: 
         return f"{where}, but {best}"
     if found.verdict == "never":
         return f"{where}, but it can be" if reachable(trial, wanted) else ""
-    if found.verdict == "undecided":
+    if found.verdict == "undecided" or found.way is None:
         return where
+    if found.registers not in states(trial):
+        return f"{where}, {found.past} cannot have been"
     if not fits(trial.done(found.atoms, found.registers), wanted) or not trial.assumed(found.atoms):
         return f"{where}, {found.changes} does not make it happen"
     changed = tuple(n for n, text in enumerate(trial.percepts) if text in {one.percept for one in found.changes})
@@ -211,18 +224,23 @@ def fed(trial: Trial, tick: Tick, wanted: Wanted, found: WhyNot) -> str:
 
 def reachable(trial: Trial, wanted: Wanted) -> bool:
     """Whether some tick of some run does it, by trying all."""
-    inputs = [atoms for atoms in dict.fromkeys(atoms for _, atoms in trial.every()) if trial.assumed(atoms)]
-    first = first_registers(trial.circuit)
-    seen, waiting = {first}, [first]
+    return any(fits(trial.done(atoms, state), wanted) for state in states(trial) for atoms in possible(trial))
+
+
+def possible(trial: Trial) -> list[Bits]:
+    """The atoms of every tick that can be."""
+    return [atoms for atoms in dict.fromkeys(atoms for _, atoms in trial.every()) if trial.assumed(atoms)]
+
+
+def states(trial: Trial) -> dict[Bits, None]:
+    """The registers that can be before some tick."""
+    inputs, first = possible(trial), first_registers(trial.circuit)
+    seen, waiting = {first: None}, [first]
     while waiting:
         state = waiting.pop()
         for atoms in inputs:
-            if fits(trial.done(atoms, state), wanted):
-                return True
             _, after = evaluate(trial.circuit, state, atoms)
             if after not in seen:
-                seen.add(after)
+                seen[after] = None
                 waiting.append(after)
-    return False
-
-
+    return seen

@@ -81,7 +81,7 @@ def test_every_goal_that_lost_says_the_one_thing_against_it() -> None:
     assert said["(maint safe)"] == ("satisfied", "already satisfied: (close) is false")
     assert said["(ach sleep)"] == ("condition", "(tired) is false")
     assert said["(maint order)"] == ("satisfied", "already satisfied: (close) is false")
-    assert said["(do z tidy)"][0] == "condition"
+    assert said["(do z (tidy))"][0] == "condition"
     assert [rule.head for rule in calm.served] == ["(maint safe)", "(ach rest)", "(maint order)"]
     assert calm.served[0].span.line == 2
 
