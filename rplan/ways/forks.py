@@ -107,11 +107,16 @@ def _text(goal: Goal, inner: Goal, number: int) -> str:
     match goal:
         case If(condition=condition):
             said = print_condition(condition)
-            return f"{said if number == 0 else f'(not {said})'} → {short(inner)}"
+            return f"{said if number == 0 else opposite(said)} → {short(inner)}"
         case Or():
             return f"alternative {number + 1} → {short(inner)}"
         case _:
             return f"member {number + 1} → {short(inner)}"
+
+
+def opposite(said: str) -> str:
+    """The negation of a condition's text, without two in a row."""
+    return said[5:-1] if said.startswith("(not ") else f"(not {said})"
 
 
 def short(goal: Goal) -> str:

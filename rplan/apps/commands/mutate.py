@@ -301,8 +301,7 @@ def _by_pytest(
 
 def _say(compiled: Compiled, fates: Sequence[Fate], seconds: float) -> None:
     counts = Counter(one.verdict for one in fates)
-    each = f", {1000 * seconds / len(fates):.0f} ms each" if fates else ""
-    click.echo(f"{compiled.goals.name}: {len(fates)} changes ({seconds:.1f} s{each})")
+    click.echo(f"{compiled.goals.name}: {len(fates)} changes ({seconds:.2f} s)")
     apart = counts[KILLED] + counts[SURVIVED] + counts[UNDECIDED]
     click.echo(f"  {counts[KILLED]} of {apart} noticed ({int(100 * share(fates))} %){_by(fates)}")
     rest = [

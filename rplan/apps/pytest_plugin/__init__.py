@@ -43,7 +43,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     asked = config.getoption("--rplan-coverage")
     if asked is not None and asked != "table" and not (asked.startswith(HTML) and asked != HTML):
-        raise pytest.UsageError(f"--rplan-coverage={asked}: `html:FOLDER` is wanted, or nothing")
+        raise pytest.UsageError(f"--rplan-coverage={asked}: `=html:FOLDER` or `=table` is wanted")
 
 
 def shelf_of(config: pytest.Config) -> Shelf:
@@ -95,6 +95,19 @@ def plan(request: pytest.FixtureRequest) -> Callable[[str | Path], PlanUnderTest
             pytest.fail(rendered(error), pytrace=False)
 
     return opened
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """A worker of pytest-xdist hands over what its tests reached."""
+    output = getattr(session.config, "workeroutput", None)
+    if output is not None and SHELF in session.config.stash:
+        output["rplan"] = session.config.stash[SHELF].handed_over()
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any) -> None:
+    for path, ticks in getattr(node, "workeroutput", {}).get("rplan", {}).items():
+        shelf_of(node.config).taken_over(Path(path), ticks)
 
 
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:

@@ -37,10 +37,13 @@ h1 { font-size: 1.5rem; margin: 0; } p { margin: .2rem 0 1.4rem; color: var(--fa
 table { border-collapse: collapse; width: 100%; font: 13px/1.6 ui-monospace, Menlo, Consolas, monospace; }
 td { padding: 0 .7rem; vertical-align: top; white-space: pre; }
 td.n, td.t { text-align: right; color: var(--faint); user-select: none; border-right: 1px solid var(--line); }
-td.t { font-variant-numeric: tabular-nums; } td.s { white-space: normal; min-width: 19rem; font-size: 12px; }
+td.t { font-variant-numeric: tabular-nums; } td:last-child { width: 100%; }
+.notes { white-space: normal; font-size: 12px; margin: .1rem 0 .35rem; }
 tr:first-child td { padding-top: .5rem } tr:last-child td { padding-bottom: .5rem }
 .yes { background: var(--yes); } .no { background: var(--no); } .never { background: var(--never); }
 .chip { display: inline-block; border-radius: .3rem; padding: 0 .4rem; margin: 0 .3rem .1rem 0; }
+.swatch { display: inline-block; width: 1.1rem; height: .8rem; border-radius: .2rem; vertical-align: -1px; }
+.swatch.part { background: var(--part); }
 .chip.yes { color: var(--yes-ink) } .chip.no { color: var(--no-ink) } .chip.never { color: var(--never-ink) }
 .chip.part { background: var(--part); color: var(--part-ink); }
 """
@@ -57,7 +60,7 @@ def page(compiled: Compiled, seen: Reached, ways: str) -> str:
     """The page of a plan; ways: how many were taken, of how many."""
     name = escape(compiled.goals.name)
     figures = "".join(_figures(seen, ways))
-    key = "".join(f'<span><span class="chip {kind}">  </span> {says}</span>' for kind, says in KEY)
+    key = "".join(f'<span><span class="swatch {kind}"></span> {says}</span>' for kind, says in KEY)
     rows = "".join(_rows(compiled, seen))
     return (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
@@ -96,10 +99,11 @@ def _rows(compiled: Compiled, seen: Reached) -> Iterator[str]:
         ]
         times = max((arm.times for _, arm in arms), default=None)
         chips = "".join(_chips(number, file, seen))
+        indent = len(line) - len(line.lstrip())
+        notes = f'<div class="notes" style="margin-left:{indent}ch">{chips}</div>' if chips else ""
         shown = "" if times is None else f"{times:,}×"
         yield (
-            f'<tr><td class="n">{number}</td><td class="t">{shown}</td>'
-            f'<td>{_marked(line, painted)}</td><td class="s">{chips}</td></tr>\n'
+            f'<tr><td class="n">{number}</td><td class="t">{shown}</td><td>{_marked(line, painted)}{notes}</td></tr>\n'
         )
 
 
@@ -136,14 +140,16 @@ def _marked(line: str, painted: Sequence[str]) -> str:
 
 
 def _chips(number: int, file: str, seen: Reached) -> Iterator[str]:
-    """What is to be said beside a line: branches that were not taken, and parts that never decided."""
-    for fork in seen.forks:
+    """What is to be said below a line of what was asked there: branches not taken, and parts that never decided."""
+    asked = [fork for fork in seen.forks if any(arm.times for arm in fork.arms)]
+    spans = [fork.fork.span for fork in asked]
+    for fork in asked:
         for arm in fork.arms:
             if not arm.times and (fork.fork.span.file, fork.fork.span.line) == (file, number):
                 says = "never: " if arm.never else "not taken: "
                 yield f'<span class="chip {_kind(0, arm.never)}">{says}{escape(arm.arm.text)}</span>'
     for part in seen.parts:
-        if part.missing and (part.span.file, part.span.line) == (file, number):
+        if part.missing and part.span in spans and (part.span.file, part.span.line) == (file, number):
             yield _part_chip(part)
 
 

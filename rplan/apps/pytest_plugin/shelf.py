@@ -20,7 +20,7 @@ from rplan.runtime.tick import Decision
 from rplan.ways.checks.branches import check_branches
 from rplan.ways.forks import Fork, forks
 from rplan.ways.reach import Reach
-from rplan.ways.tally import Ticks
+from rplan.ways.tally import Bits, Ticks
 
 
 @dataclass
@@ -74,6 +74,30 @@ class Shelf:
         plan = self.plan(path)
         watch: Watch = plan.watch
         return PlanUnderTest(plan.compiled, self.libraries, watch)
+
+    # --- between processes ---
+
+    def handed_over(self) -> dict[str, list[tuple[str, str, int]]]:
+        """The ticks that were seen of each plan, as plain values."""
+        return {
+            str(path): [(_text(inputs), _text(registers), times) for (inputs, registers), times in plan.ticks.items()]
+            for path, plan in self.plans.items()
+        }
+
+    def taken_over(self, path: Path, ticks: Iterable[tuple[str, str, int]]) -> None:
+        """Count what another process has seen."""
+        plan = self.plan(path)
+        for inputs, registers, times in ticks:
+            key = (_bits(inputs), _bits(registers))
+            plan.ticks[key] = plan.ticks.get(key, 0) + times
+
+
+def _text(bits: Bits) -> str:
+    return "".join("1" if bit else "0" for bit in bits)
+
+
+def _bits(text: str) -> Bits:
+    return tuple(letter == "1" for letter in text)
 
 
 def rendered(error: PlanError) -> str:
