@@ -134,13 +134,13 @@ def _recorded(path: Path, at: float | None) -> Moment:
     last = 0.0
     for number, (time, plan) in enumerate(_ticks(recording.ticks)):
         last = time
-        if at is None or time > at + LATE:
+        if at is None or not time <= at + LATE:
             continue
         found = (number, time, plan)
         before.add(number, time, _shown(plan))
     if at is None:
         raise InputError(f"say when: --at SECONDS ({path} lasts from 0 s to {last:g} s)")
-    if found is None or at > last + compiled.goals.period + LATE:
+    if found is None or not at <= last + compiled.goals.period + LATE:
         raise InputError(f"--at {at:g}: {path} lasts from 0 s to {last:g} s")
     number, time, plan = found
     atoms, registers = _bits(path, plan, compiled)

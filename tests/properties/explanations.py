@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations, product
 
 import numpy as np
@@ -18,9 +19,9 @@ from rplan.circuit import passes
 from rplan.circuit.build import build
 from rplan.circuit.evaluate import Bits, evaluate, first_registers
 from rplan.goals.condition import Comparison, percept_terms
+from rplan.runtime.encode import encoder
 from rplan.ways.meaning import Situation, holds, taken
 from rplan.ways.reduce import Ways
-from rplan.ways.situations import atom_value
 from rplan.ways.why import Reasons, Why
 from rplan.ways.why_not import Changes, Wanted, WhyNot
 
@@ -77,6 +78,7 @@ class Trial:
         self.names = [port.name for port, _ in self.circuit.outputs]
         self.asked = self.ways.atoms[: self.ways.asking]
         numbers = [t.text for atom in self.asked if isinstance(atom, Comparison) for t in percept_terms(atom)]
+        self._encode = encoder(self.ways.goals, self.asked)
         self.percepts = {term.text: term.text in numbers for term in self.ways.goals.percepts(driving=True)}
 
     def random(self, chance: np.random.Generator, ticks: int) -> Iterator[Tick]:
@@ -93,7 +95,7 @@ class Trial:
             _, registers = evaluate(self.circuit, registers, atoms)
 
     def atoms(self, values: Values) -> Bits:
-        return tuple(atom_value(atom, values) for atom in self.asked)
+        return self._encode(values)
 
     def situation(self, atoms: Bits, before: Situation | None) -> Situation:
         known = {atom.text: value for atom, value in zip(self.asked, atoms, strict=True)}
@@ -114,6 +116,7 @@ class Trial:
         """Whether the assumptions hold, as far as they ask what the plan asks."""
         return all(holds(one.condition, self.situation(atoms, None)) for one in self.ways.goals.assumptions)
 
+    @cached_property
     def every(self) -> list[tuple[Values, Bits]]:
         """Every combination of percepts that can make a difference."""
         domains = [EVERY if number else (False, True) for number in self.percepts.values()]
@@ -128,7 +131,7 @@ def usable(trial: Trial) -> bool:
 
 def differs(trial: Trial, tick: Tick) -> str:
     """What an explanation of this tick says otherwise than the reference; "" if nothing."""
-    every = trial.every()
+    every = trial.every
     real = {atoms: trial.acts(atoms, tick.before) for atoms in dict.fromkeys(atoms for _, atoms in every)}
     can_be = {atoms: acts for atoms, acts in real.items() if trial.assumed(atoms)}
     why = Reasons(trial.ways).why(tick.atoms, tick.registers)
@@ -229,7 +232,7 @@ def reachable(trial: Trial, wanted: Wanted) -> bool:
 
 def possible(trial: Trial) -> list[Bits]:
     """The atoms of every tick that can be."""
-    return [atoms for atoms in dict.fromkeys(atoms for _, atoms in trial.every()) if trial.assumed(atoms)]
+    return [atoms for atoms in dict.fromkeys(atoms for _, atoms in trial.every) if trial.assumed(atoms)]
 
 
 def states(trial: Trial) -> dict[Bits, None]:

@@ -49,7 +49,9 @@ def _text(tick: Moment, why: Why) -> Iterator[str]:
         yield f"  {act.output} is {act.value}: set by {act.rule}, {tick.place(act.span)}{_since(tick, act)}"
     yield from _open(tick, why)
     if why.served:
-        yield f"  by way of {', '.join(f'{rule.head} ({tick.place(rule.span)})' for rule in why.served)}"
+        yield click.style("by way of", bold=True)
+    for rule in why.served:
+        yield f"  {rule.head}, {tick.place(rule.span)}"
     yield click.style("enough for that, whatever else is perceived", bold=True)
     if not (why.literals or why.kept):
         yield "  nothing: it is always so"
