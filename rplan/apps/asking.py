@@ -80,7 +80,7 @@ def with_moment(command: Callable[..., Any]) -> Callable[..., Any]:
     return talk.with_libraries(command)
 
 
-def moment(about: str, at: float | None, given: str | None, trace: Path | None) -> Moment:
+def moment(about: str, at: float | None, given: str | None, trace: Path | None, *, as_json: bool = False) -> Moment:
     """The tick that is asked about; `InputError` where there is none, leaves with 1 where the plan is wrong."""
     if is_recording(Path(about)):
         if given is not None or trace is not None:
@@ -95,7 +95,7 @@ def moment(about: str, at: float | None, given: str | None, trace: Path | None) 
         raise InputError("--at goes with a recording; --trace and --given say which tick of a plan is meant")
     if given is None and trace is None:
         raise InputError("say which tick is meant: --given 'PERCEPT, PERCEPT=NUMBER', or --trace FILE")
-    return _alone(talk.compiled(plan_file(about), allow_holes=True), given, trace)
+    return _alone(talk.compiled(plan_file(about), allow_holes=True, as_json=as_json), given, trace)
 
 
 def is_recording(path: Path) -> bool:
@@ -132,7 +132,7 @@ def _recorded(path: Path, at: float | None) -> Moment:
     before = _Before()
     found: tuple[int, float, Mapping[str, object]] | None = None
     last = 0.0
-    for number, (time, plan) in enumerate(_ticks(recording.ticks)):
+    for number, time, plan in _ticks(recording.ticks):
         last = time
         if at is None or not time <= at + LATE:
             continue
@@ -147,12 +147,12 @@ def _recorded(path: Path, at: float | None) -> Moment:
     return Moment(compiled, number, time, atoms, registers, before.last, before.since)
 
 
-def _ticks(ticks: Iterable[Mapping[str, object]]) -> Iterator[tuple[float, Mapping[str, object]]]:
-    """Time and plan's part of every tick in which the plan decided."""
-    for tick in ticks:
+def _ticks(ticks: Iterable[Mapping[str, object]]) -> Iterator[tuple[int, float, Mapping[str, object]]]:
+    """Number, time [s] and the plan's part of every tick in which the plan decided."""
+    for number, tick in enumerate(ticks):
         time, plan = tick.get("t"), tick.get("plan")
         if isinstance(time, int | float) and isinstance(plan, Mapping):
-            yield float(time), plan
+            yield number, float(time), plan
 
 
 def _shown(plan: Mapping[str, object]) -> dict[str, str | None]:

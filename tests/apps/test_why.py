@@ -10,7 +10,11 @@ from typing import Any
 import pytest
 from click.testing import CliRunner, Result
 
+from rplan import Controller, why, why_not
 from rplan.apps.cli import cli
+from rplan.apps.simulation import load_world
+from rplan.apps.wiring import compile_file, crew, decider
+from sim.environment import Environment
 from sim.recording import Recorder
 
 ROOT = Path(__file__).parents[2]
@@ -174,6 +178,23 @@ def test_what_a_channel_was_sent_may_be_any_value(tmp_path: Path) -> None:
     assert found["since"]["x"]["before"] == "[0, 1]"
 
 
+# --- a controller that runs ---------------------------------------------------------------------------
+
+
+def test_a_decision_of_a_controller_that_runs_is_explained() -> None:
+    plan = compile_file(MAKE_ROOM)
+    world = load_world(MAKE_ROOM.parent / "visit.yaml")
+    environment = Environment(world.scenario)
+    reading, _ = environment.reset(seed=0)
+    controller = Controller(decider(plan), crew(plan))
+    tick = controller.step(reading)
+    found = why(plan, tick.decision)
+    assert [(one.text, one.value) for one in found.literals] == [("(anything-is-too-close)", False)]
+    other = why_not(plan, tick.decision, {"action": "(move-away-from-danger)"}, tick.percepts)
+    assert [one.percept for one in other.changes] == ["(anything-is-too-close)"]
+    controller.close()
+
+
 # --- plans alone ----------------------------------------------------------------------------------------
 
 
@@ -240,10 +261,7 @@ def test_a_plan_in_which_nothing_lost_says_so(tmp_path: Path) -> None:
     [
         ((), "say which tick is meant: --given"),
         (("--at", "1"), "--at goes with a recording"),
-        (
-            ("--given", "sen"),
-            "--given: `sen` is a percept that the plan neither declares nor reads (did you mean `seen`?)",
-        ),
+        (("--given", "distanc"), "neither declares nor reads (did you mean `distance`?)"),
         (("--given", "seen, seen"), "--given: `seen`: it is there twice"),
         (("--given", "seen, (seen)"), "is there twice, also as"),
         (("--given", "seen,, distance=1"), "--given: ``: a percept is wanted"),
@@ -291,6 +309,7 @@ def test_a_plan_that_is_wrong_is_said_to_be(tmp_path: Path) -> None:
     plan = tmp_path / "wrong.rplan"
     plan.write_text("(goalem (ach nothing))")
     assert "error[no-rule]" in wrong("why", plan, "--given", "", code=1)
+    assert json.loads(run("why", plan, "--given", "", "--json").stdout)["ok"] is False
 
 
 def test_a_number_may_be_wanted_in_any_unit(tmp_path: Path) -> None:

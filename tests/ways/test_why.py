@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import pytest
+from properties.strategies import percept
 from properties.texts import compiled, decider
 
 import rplan.ways.why as why_module
 from rplan.driver import Compiled
+from rplan.goals.condition import AllOf, AnyOf, Constant, Not, OutputIs
 from rplan.runtime.why import why
 from rplan.ways.kept import Kept, Literal, Now, kept, kept_by
 from rplan.ways.lost import Lost
@@ -157,6 +159,27 @@ def test_numbers_that_cannot_be_together_exactly_are_all_named() -> None:
     found = Reasons(clash.ways).why((True, True), ())
     assert not found.smallest
     assert len(found.literals) == 2
+
+
+def test_conditions_are_read_whatever_stands_in_them() -> None:
+    plan = compiled("(goalem (when (a) (do x on)))")
+    now = Now(plan.ways, (True,), ())
+    a, yes = percept("(a)"), Constant(True)
+    assert now.holds(AllOf((yes, a)))
+    assert now.holds(AnyOf((Not(yes), a)))
+    assert now.deciding(AllOf((yes, Not(a)))) == (Literal("(a)", True),)
+    assert now.deciding(AnyOf((yes, a))) == ()
+    with pytest.raises(ValueError, match="ask no outputs"):
+        now.holds(OutputIs("x", None))
+    assert now.deciding(OutputIs("x", None)) == ()
+
+
+def test_a_question_that_is_too_hard_leaves_every_literal() -> None:
+    plan = compiled("(declare (d) number) (declare (e) number) (goalem (when (> (* d e) 2) (do x on)))")
+    reasons = Reasons(plan.ways)
+    reasons.solver.set("rlimit", 1)
+    found = reasons.why((True,), ())
+    assert (len(found.literals), found.smallest) == (1, False)
 
 
 def test_lost_is_a_plain_value() -> None:

@@ -27,7 +27,7 @@ def command(about: str, at: float | None, given: str | None, trace: Path | None,
     The tick is that of a RECORDING at a time (--at), or one of a PLAN alone: percepts are false or 0 unless --given,
     and what it keeps is as at its start, or as after the ticks of --trace. --trace alone asks about its last tick.
     """
-    tick = moment(about, at, given, trace)
+    tick = moment(about, at, given, trace, as_json=as_json)
     why = Reasons(tick.compiled.ways).why(tick.atoms, tick.registers)
     if as_json:
         talk.result(_plain(tick, why))

@@ -36,7 +36,7 @@ def command(about: str, wanted: str, at: float | None, given: str | None, trace:
     OUTPUT= asks for an output that stays open. The tick is said as for `rplan why`. Where no percepts can do it, it
     says what would have had to be kept from the ticks before.
     """
-    tick = moment(about, at, given, trace)
+    tick = moment(about, at, given, trace, as_json=as_json)
     wishes = _wishes(wanted, tick.compiled.ways)
     try:
         found = Changes(tick.compiled.ways, wishes).why_not(tick.atoms, tick.registers, tick.percepts)
