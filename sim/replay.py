@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 from importlib.resources import files
 from pathlib import Path
 
-from behaviours.interface import Ranges
+from behaviours.interface import Ranges, Reading
 from sim.recording import Json, Recording, json_text
 
 MILLI, CENTI = 1000, 100
@@ -193,7 +193,7 @@ class Packing:
         self._due = reading.stamp + SCAN_S - 1e-6
 
     def last(self) -> Json:
-        """What the last tick and its reading added: {"t" [ms], "tracks": name -> row, "runs": name -> value, "rays"}."""
+        """What a tick and its reading added last: {"t" [ms], "tracks": name -> row, "runs": name -> value, "rays"}."""
         index = len(self.milliseconds) - 1
         return {
             "t": self.milliseconds[index],

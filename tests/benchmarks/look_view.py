@@ -112,7 +112,11 @@ async def look(tab: Tab, out: Path) -> None:
     await tab.eval("document.getElementById('ahead').click(); document.getElementById('ahead').click()")
     await asyncio.sleep(0.5)
     print("two ahead:", await tab.eval("document.getElementById('clock').textContent"))
-    place = "(id => { const b = document.getElementById('lot').getBoundingClientRect(), p = viewer.place(id), q = viewer.px(p[0], p[1]); return [b.left + q[0], b.top + q[1], p[0], p[1]]; })('trashcan-1')"
+    place = """(id => {
+        const b = document.getElementById('lot').getBoundingClientRect(), p = viewer.place(id);
+        const q = viewer.px(p[0], p[1]);
+        return [b.left + q[0], b.top + q[1], p[0], p[1]];
+    })('trashcan-1')"""
     x, y, *was = await tab.eval(place)
     await tab.drag((x, y), (x + 30, y - 40))
     await tab.eval("live.tell({do: 'step', ticks: 2})")

@@ -82,7 +82,7 @@ def _plain(found: Inspection, parts: list[str]) -> dict[str, object]:
         for r in found.table.rows
     ]
     every: dict[str, object] = {
-        "table": {"conditions": found.table.conditions, "rows": rows, "whole": found.table.whole},
+        "table": {"conditions": found.table.conditions, "rows": rows, "exclusive": found.table.exclusive},
         "goals": asdict(found.goals),
         "circuit": asdict(found.stats) | {"period": found.period},
         "percepts": [asdict(reads) for reads in found.percepts],

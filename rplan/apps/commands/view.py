@@ -10,12 +10,12 @@ from pathlib import Path
 import click
 
 from rplan.apps import talk
-from rplan.apps.commands.simulate import _world as world_of
-from rplan.apps.files import InputError, plan_file, scenario_file
-from rplan.apps.simulation import World
+from rplan.apps.files import InputError, plan_file, scenario_file, unreadable
+from rplan.apps.simulation import World, load_world
 from rplan.apps.viewer.session import Session
 from rplan.driver import Compiled
 from rplan.lang.diagnostic import PlanError
+from sim.scenarios.importers.imported import WorldFileError
 from sim.scenarios.schema import ScenarioError
 
 
@@ -30,13 +30,14 @@ from sim.scenarios.schema import ScenarioError
 def command(plan: str, scenario: str | None, seed: int, port: int, paused: bool, allow_holes: bool) -> None:
     """Simulate PLAN and show it live on a page of this machine: what it senses, decides and does, and why.
 
-    On the page one can pause, step, go back to what was, drag things, force percepts and break at rules. Ctrl-C ends it.
+    On the page one can pause, step, go back to what was, drag things, force percepts and stop at rules. Ctrl-C ends
+    it.
     """
     if find_spec("websockets") is None:
         raise InputError("rplan view needs websockets: pip install 'rplan[view]'")
     path = plan_file(plan)
     compiled = talk.compiled(path, allow_holes=allow_holes)
-    session = _session(compiled, path, world_of(scenario_file(scenario, path)), seed)
+    session = _session(compiled, path, _world(scenario_file(scenario, path)), seed)
     session.wishes.running = not paused
     try:
         asyncio.run(_watch(session, port))
@@ -45,6 +46,17 @@ def command(plan: str, scenario: str | None, seed: int, port: int, paused: bool,
     except OSError as error:
         raise InputError(f"port {port} of 127.0.0.1: {error.strerror or error}") from None
     click.echo(f"ended at {session.episode.time:.1f} s of simulated time")
+
+
+def _world(path: Path) -> World:
+    try:
+        return load_world(path)
+    except ScenarioError as error:
+        raise InputError("the scenario is wrong\n" + "\n".join(f"  {p}" for p in error.problems)) from None
+    except WorldFileError as error:
+        raise InputError(str(error)) from None
+    except OSError as error:
+        unreadable(path, error)
 
 
 def _session(compiled: Compiled, path: Path, world: World, seed: int) -> Session:

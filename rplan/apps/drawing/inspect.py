@@ -4,8 +4,8 @@ Takes: a compiled plan. Gives: `Inspection`, plain values that text, SVG and pag
 look (inspect_text.py, inspect_svg.py, inspect_page.py).
 
 The table is read off the tree of tests that the outputs of the circuit make (rplan/circuit/decisions.py): its rows
-exclude each other and leave nothing out. Where that tree gets too large, rows are ways that can be taken, each with the
-conditions that it passed; `whole` then says whether they are all.
+exclude each other and leave nothing out. Where that tree gets too large to be read, rows are the places of the goal
+that set something, in the order of the text, each with the conditions on the way to it; what stands above goes first.
 """
 
 from __future__ import annotations
@@ -25,12 +25,11 @@ from rplan.goals.condition import Condition, Memory, percept_terms, print_condit
 from rplan.goals.condition import atoms as atoms_of
 from rplan.goals.goal import And, Anything, Do, Goal, If, Impossible, Or, PrioAnd, Reduced, walk
 from rplan.lang.source import Span
-from rplan.ways.listing import taken_ways
-from rplan.ways.situations import replay
+from rplan.ways.guards import FALSE
 from rplan.ways.way import TakenWay, taken_way
 
-MOST_ROWS = 1000
-MOST_WAYS = 100
+MOST_ROWS, MOST_CONDITIONS = 200, 64
+"""Of a table that can be read whose rows exclude each other."""
 MERGED = 24
 """Rows of no more conditions than these are put together where they differ in one alone."""
 
@@ -51,11 +50,15 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """conditions: those that some row asks, in the order of the plan. whole: no way is missing."""
+    """conditions: those that some row asks, in the order of the plan.
+
+    exclusive: in every situation one row holds; otherwise several may, and a row gives way to those above it with which
+    it does not go together.
+    """
 
     conditions: tuple[str, ...]
     rows: tuple[Row, ...]
-    whole: bool
+    exclusive: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +75,7 @@ class Branch:
 
 @dataclass(frozen=True, slots=True)
 class Reads:
-    """What a rule asks in its own conditions, not in those of its subgoals; memory: its conditions that ask the past."""
+    """What a rule asks in its own conditions, not in those of its subgoals; memory: those that ask the past."""
 
     rule: str
     percepts: tuple[str, ...]
@@ -117,9 +120,9 @@ def inspect(compiled: Compiled) -> Inspection:
 def table(compiled: Compiled) -> Table:
     """Which outputs are set where."""
     tree = decisions(compiled.circuit)
-    if tree is None or _leaves(tree, {}) > MOST_ROWS:
-        return _of_ways(compiled)
     names = _names(compiled.circuit)
+    if tree is None or len(names) > MOST_CONDITIONS or _leaves(tree, {}) > MOST_ROWS:
+        return _ranked(compiled)
     cubes = [(tuple((names[v], value) for v, value in path), leaf) for path, leaf in _paths(tree, ())]
     asked = {name for cube, _ in cubes for name, _ in cube}
     conditions = tuple(name for name in dict.fromkeys(names.values()) if name in asked)
@@ -195,18 +198,35 @@ def _by(way: TakenWay) -> tuple[tuple[str, ...], tuple[str, ...]]:
     return tuple(dict.fromkeys(act.rule for act in way.acts)), tuple(given.member for given in way.given_up)
 
 
-def _of_ways(compiled: Compiled) -> Table:
-    rows = []
-    for trace in taken_ways(compiled.ways, MOST_WAYS):
-        seen = replay(compiled.ways, trace)
-        way = taken_way(compiled.ways, seen.atoms, seen.registers)
-        when = tuple(dict.fromkeys((branch.condition, branch.value) for branch in way.branches))
-        sets = tuple(dict.fromkeys(f"{act.output}={act.value}" for act in way.acts))
-        first = min((act.span.line for act in way.acts), default=0)
-        rows.append((first, Row(when, sets, way.hole, *_by(way))))
-    ordered = tuple(row for _, row in sorted(rows, key=lambda pair: pair[0]))
-    conditions = tuple(dict.fromkeys(name for row in ordered for name, _ in row.when))
-    return Table(conditions, ordered, len(ordered) < MOST_WAYS and not compiled.ways.driving)
+def _ranked(compiled: Compiled) -> Table:
+    """A row for every place of the goal that sets something and can be served, with the conditions on the way to it."""
+    ways = compiled.ways
+    rows: dict[tuple[Cube, int], list[Do]] = {}
+    for node in ways.layout.nodes:
+        if isinstance(node.goal, Do) and ways.reached[node.number] != FALSE:
+            above = node.number if node.parent < 0 else node.parent
+            rows.setdefault((_way_to(compiled, node.number), above), []).append(node.goal)
+    made = tuple(_ranked_row(cube, dos) for (cube, _), dos in rows.items())
+    conditions = tuple(dict.fromkeys(name for row in made for name, _ in row.when))
+    return Table(conditions, made, False)
+
+
+def _ranked_row(cube: Cube, dos: Sequence[Do]) -> Row:
+    sets = tuple(f"{do.output}={do.value.text}" for do in dos)
+    return Row(cube, sets, False, tuple(dict.fromkeys(do.rule for do in dos if do.rule)), ())
+
+
+def _way_to(compiled: Compiled, number: int) -> Cube:
+    """The conditions above a place of the goal, outermost first."""
+    layout, found = compiled.ways.layout, list[tuple[str, bool]]()
+    here = layout.nodes[number]
+    while here.parent >= 0:
+        above = layout.nodes[here.parent]
+        if isinstance(above.goal, If):
+            first = layout.inside[above.number][0] == here.number
+            found.append((print_condition(above.goal.condition), first))
+        here = above
+    return tuple(dict.fromkeys(reversed(found)))
 
 
 # --- the goal tree ---------------------------------------------------------------------------------

@@ -12,6 +12,7 @@ from rplan.apps.drawing.inspect import Branch, Inspection, Row, Table
 
 WIDEST = 24
 """So many conditions have a column each; of more, each row says those that it asks."""
+RANKED = "several rows may hold: one gives way to those above it with which it does not go together"
 MARKS = {True: "✓", False: "✗", None: "·"}
 
 
@@ -19,8 +20,8 @@ def table_text(inspection: Inspection) -> str:
     """The decision table: ✓ must hold, ✗ must not, · does not matter."""
     table = inspection.table
     lines = list(_columns(table) if len(table.conditions) <= WIDEST else _listed(table))
-    if not table.whole:
-        lines.append("there may be more ways than these")
+    if not table.exclusive:
+        lines.append(RANKED)
     return "\n".join(lines)
 
 

@@ -44,7 +44,7 @@ class Viewer:
     def __init__(self, session: Session) -> None:
         self.session = session
         self.token = secrets.token_urlsafe(18)
-        self.port = 0
+        self.host, self.port = HOST, 0
         self._pages = 0
         self._changed = asyncio.Event()
         self._awake = asyncio.Event()
@@ -81,7 +81,7 @@ class Viewer:
         tag = '<script type="application/octet-stream" id="data">{{data}}</script>'
         script = files("rplan.apps.viewer").joinpath("live.js").read_text(encoding="utf-8")
         page = template().replace(tag, f"<script>\n{script}</script>", 1)
-        return page.replace("{{title}}", html.escape(title(self.session.data()["header"])), 1)  # type: ignore[arg-type]
+        return page.replace("{{title}}", html.escape(title(self.session.header())), 1)
 
     # --- pages ------------------------------------------------------------------------------------
 
@@ -213,7 +213,7 @@ async def watch(
     )
     driving = asyncio.create_task(viewer.drive())
     try:
-        viewer.port = next(iter(server.sockets)).getsockname()[1]
+        viewer.host, viewer.port = next(iter(server.sockets)).getsockname()[:2]
         waiting = ready(viewer)
         if waiting is not None:
             await waiting

@@ -204,13 +204,14 @@ class Session:
     def data(self) -> Json:
         """Everything so far."""
         return {
-            "header": self._header(),
+            "header": self.header(),
             "verdict": "",
             "cut_short": False,
             "circuit": self._circuit,
         } | self.packing.packed()
 
-    def _header(self) -> Json:
+    def header(self) -> Json:
+        """The header of a recording of this run."""
         scenario = self._world.scenario
         return {
             "plan": plan_header(self.compiled),
@@ -246,7 +247,8 @@ class Session:
 
 def _kind(compiled: Compiled, name: str) -> str:
     signature = compiled.goals.functions.get(name)
-    return "truth" if signature is None or signature.type.name == "bool" else "number"
+    is_number = signature is not None and signature.type is not None and signature.type.name != "bool"
+    return "number" if is_number else "truth"
 
 
 def _pose(*numbers: object) -> Pose:
