@@ -164,7 +164,7 @@ class Run:
         key = named(name, self._names)
         if value in ("true", "false"):
             return self._truth(name, value == "true", False)
-        if kind_of(self._plan.compiled.ways, key) != "number":
+        if kind_of(self._plan.compiled, key) != "number":
             raise TicksError(f"`{name}` is true or false, not {value}")
         try:
             return key, read_number(value)[0]
@@ -173,7 +173,7 @@ class Run:
 
     def _truth(self, name: str, value: bool, wrapped: bool) -> tuple[str, bool]:
         key = named(name.removesuffix(")") if wrapped else name, self._names)
-        if kind_of(self._plan.compiled.ways, key) == "number":
+        if kind_of(self._plan.compiled, key) == "number":
             raise TicksError(f"`{name}` is a number: write `{name}=0.3`")
         return key, value
 

@@ -172,9 +172,20 @@ def _given(given: object, before: Values, names: Mapping[str, str], ways: Ways) 
 
 
 def percept_names(compiled: Compiled) -> dict[str, str]:
-    """Names under which a plan's percepts may be given -> canonical text."""
-    every = {term.text: term.text for term in compiled.goals.percepts()}
-    return every | {term.name: term.text for term in compiled.goals.percepts() if not term.arguments}
+    """Names under which percepts may be given -> canonical text: those that the plan reads, or knows of."""
+    known = {name: f"({name})" for name in _known(compiled)}
+    read = {term.text if term.arguments else term.name: term.text for term in compiled.goals.percepts()}
+    every = read | known
+    return every | {text: text for text in every.values()}
+
+
+def _known(compiled: Compiled) -> dict[str, str]:
+    """Percepts without arguments that are declared, read or not -> their types."""
+    return {
+        one.name: one.type.name
+        for one in compiled.goals.functions.values()
+        if one.type is not None and one.type.name in ("bool", "number") and not one.parameters
+    }
 
 
 def named(name: str, names: Mapping[str, str]) -> str:
@@ -182,14 +193,13 @@ def named(name: str, names: Mapping[str, str]) -> str:
     if name in names:
         return names[name]
     meant = close(name, names)
-    known = ", ".join(key for key in names if not key.startswith("(")) or "none"
-    hint = f"did you mean `{meant}`?" if meant else f"it reads: {known}"
-    raise TicksError(f"the plan does not read a percept `{name}`; {hint}")
+    hint = f"; did you mean `{meant}`?" if meant else ""
+    raise TicksError(f"`{name}` is a percept that the plan neither declares nor reads{hint}")
 
 
-def kind_of(ways: Ways, text: str) -> str:
-    """What a percept is: `number` or `truth`."""
-    return "number" if text in number_percepts(ways) else "truth"
+def kind_of(compiled: Compiled, text: str) -> str:
+    """What a percept is: `number` or `bool`."""
+    return "number" if text in number_percepts(compiled.ways) else _known(compiled).get(text[1:-1], "bool")
 
 
 def try_ticks(decide: Decider, golden: Golden, watch: Watch) -> Difference | None:

@@ -29,6 +29,10 @@ from rplan.ways.way import taken_way
 
 MOST_TICKS = 3
 """Golden ticks that differ are shown, so many."""
+MOST_EXPLAINED = 5
+"""So many failing rules of a plan are shown with situations; those after them say what can never be taken alone."""
+LARGE = 200
+"""Plans with more forks are not asked for the reasons; `rplan check` says them."""
 NEVER_TEXTS = ("dead", "shadowed", "always-true", "always-false", "duplicate-condition", "duplicate-rule")
 
 
@@ -112,11 +116,12 @@ class RuleItem(PlanItem):
 def _branches(plan: Plan, rule: RuleInfo, here: list[Fork]) -> Iterator[str]:
     """Every branch of a rule, those that cannot be taken marked, the others each with its simplest situation."""
     yield f"{rule.span}: not every branch of {rule.head} can be taken"
+    plan.explained += 1
     for arm in (arm for fork in here for arm in fork.arms):
         answer = taken(plan.reach, arm)
         mark = {True: "  ", False: "- "}.get(answer, "? ") if isinstance(answer, bool) else "? "
         yield f"  {mark}{arm.span.line}: {arm.text}: {_when(plan, arm, answer)}"
-    for finding in plan.never:
+    for finding in plan.never if len(plan.forks) <= LARGE else ():
         if finding.code in NEVER_TEXTS and _inside(finding.span.line, rule):
             yield "\n" + render(finding, plan.compiled.texts)
 
@@ -126,6 +131,8 @@ def _inside(line: int, rule: RuleInfo) -> bool:
 
 
 def _when(plan: Plan, arm: Any, answer: bool | Undecided) -> str:
+    if answer is True and plan.explained > MOST_EXPLAINED:
+        return "taken"
     if answer is True:
         trace = witness(plan.reach, arm)
         return "taken" if trace is None else f"taken when {describe(trace, plan.compiled.ways)}"

@@ -25,10 +25,14 @@ from rplan.ways.tally import Bits, Ticks
 
 @dataclass
 class Plan:
-    """A compiled plan, what has been proven of it, and the ticks that were seen of it."""
+    """A compiled plan, what has been proven of it, and the ticks that were seen of it.
+
+    explained: so many of its rules failed and were put into words.
+    """
 
     compiled: Compiled
     ticks: Ticks = field(default_factory=dict)
+    explained: int = 0
 
     def watch(self, decision: Decision) -> None:
         """Count a tick."""
