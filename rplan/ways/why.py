@@ -20,14 +20,15 @@ import z3
 from rplan.goals.condition import Percept
 from rplan.goals.goal import Reduced
 from rplan.lang.source import Span
+from rplan.ways.exhaust import evaluate_many
 from rplan.ways.kept import Kept, Literal, kept, kept_by
 from rplan.ways.lost import Lost, lost
 from rplan.ways.reduce import Ways
 from rplan.ways.situations import Unrolling, negated
 from rplan.ways.way import TakenWay, taken_way
 
-MOST_ROUNDS = 400
-"""Hitting sets that are tried before any set from which nothing can be left out is taken."""
+MOST_CHECKS = 2_000
+"""Questions to z3 before any set from which nothing can be left out is taken."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,8 +104,9 @@ class Reasons:
             return [*range(len(atoms))], False, [*kept_by(self.ways)]
         self.solver.push()
         self.solver.add(*assumed, other)
+        near = _Nearer(self.ways, atoms, held, [values[guard] for guard in self._guards], self._guards)
         try:
-            literals, smallest = _Smallest(self.solver, wanted, past).search()
+            literals, smallest = _Smallest(self.solver, wanted, past, near).search()
             return literals, smallest, self._texts([wanted[number] for number in literals], past)
         finally:
             self.solver.pop()
@@ -119,15 +121,60 @@ class Reasons:
         return [*left]
 
 
+class _Nearer:
+    """Makes a tick with other outputs more like the one that was, by trying; z3 is left what that does not find."""
+
+    def __init__(
+        self, ways: Ways, atoms: Sequence[bool], registers: Sequence[bool], outputs: list[bool], guards: Sequence[int]
+    ) -> None:
+        self._ways, self._atoms, self._registers = ways, atoms, registers
+        self._outputs = list(zip(guards, outputs, strict=True))
+        every = () if ways.assumed else range(ways.asking)
+        self._free = [number for number in every if isinstance(ways.atoms[number], Percept)]
+
+    def __call__(self, agreeing: list[int]) -> list[int]:
+        """The literals that hold, and more that can hold with them; only percepts, and no assumption stands by."""
+        known = {*agreeing}
+        left = [number for number in self._free if number not in known]
+        size = len(left)
+        while size > 0:
+            chunks = [left[start : start + size] for start in range(0, len(left), size)]
+            chosen = self._other(known, chunks)
+            if chosen is None:
+                size //= 2
+                continue
+            known |= {*chosen}
+            left = [number for number in left if number not in known]
+            size = min(size, len(left))
+        return sorted(known)
+
+    def _other(self, known: set[int], chunks: list[list[int]]) -> list[int] | None:
+        """The first chunk with which the outputs are others still."""
+        every = (1 << len(chunks)) - 1
+        columns = [0] * len(self._ways.atoms)
+        for number, value in enumerate(self._atoms):
+            columns[number] = every if value == (number in known) else 0
+        for place, chunk in enumerate(chunks):
+            for number in chunk:
+                columns[number] ^= 1 << place
+        registers = [every if value else 0 for value in self._registers]
+        values = evaluate_many(self._ways.guards, columns, len(chunks), registers)
+        other = 0
+        for guard, value in self._outputs:
+            other |= values[guard] ^ (every if value else 0)
+        return chunks[(other & -other).bit_length() - 1] if other else None
+
+
 class _Smallest:
     """The smallest set of literals that leaves nothing to a solver, the first in order of those as small."""
 
-    def __init__(self, solver: z3.Solver, wanted: list[z3.BoolRef], always: list[z3.BoolRef]) -> None:
-        self._solver, self._wanted, self._always = solver, wanted, always
+    def __init__(self, solver: z3.Solver, wanted: list[z3.BoolRef], always: list[z3.BoolRef], near: _Nearer) -> None:
+        self._solver, self._wanted, self._always, self._near = solver, wanted, always, near
         self._hitting = z3.SimpleSolver(ctx=solver.ctx)
         self._chosen = [z3.Bool(f"chosen {number}", solver.ctx) for number in range(len(wanted))]
         self._most = 0
-        self._rounds = 0
+        self._checks = 0
+        self._limits: dict[int, z3.BoolRef] = {}
 
     def search(self) -> tuple[list[int], bool]:
         try:
@@ -141,53 +188,64 @@ class _Smallest:
             self._most += 1
             found = self._with([])
         sure: list[z3.BoolRef] = []
-        for number, one in enumerate(self._chosen):
+        for number, one in enumerate(self._chosen if found else []):
             better = found if number in found else self._with([*sure, one])
             found = better or found
             sure.append(one if better is not None else negated(one))
+            if number == found[-1]:
+                break
         return found
 
     def _with(self, sure: list[z3.BoolRef]) -> list[int] | None:
         """A set of at most so many literals that is enough; None if there is none."""
-        limit = z3.PbLe([(one, 1) for one in self._chosen], self._most) if self._chosen else z3.BoolVal(True, self._solver.ctx)
-        self._hitting.push()
-        self._hitting.add(limit, *sure)
-        found: list[int] | None = None
-        learned = []
-        while found is None and self._hitting.check() == z3.sat:
+        limit = self._at_most(self._most)
+        while self._hitting.check(limit, *sure) == z3.sat:
             model = self._hitting.model()
             tried = [n for n, one in enumerate(self._chosen) if z3.is_true(model.eval(one))]
             change = self._change(tried)
             if change is None:
-                found = tried
-            else:
-                learned.append(z3.Or([self._chosen[number] for number in change]))
-                self._hitting.add(learned[-1])
-        self._hitting.pop()
-        self._hitting.add(*learned)
-        return found
+                return tried
+            self._hitting.add(z3.Or([self._chosen[number] for number in change]))
+        return None
+
+    def _at_most(self, most: int) -> z3.BoolRef:
+        """A literal that says that no more are chosen."""
+        if most not in self._limits:
+            name = z3.Bool(f"at most {most}", self._solver.ctx)
+            if self._chosen:
+                self._hitting.add(z3.Implies(name, z3.PbLe([(one, 1) for one in self._chosen], most)))
+            self._limits[most] = name
+        return self._limits[most]
 
     def _change(self, fixed: list[int]) -> list[int] | None:
         """Literals whose change makes it otherwise with these fixed, none of them for nothing; None: nothing does."""
-        self._rounds += 1
-        if self._rounds > MOST_ROUNDS:
-            raise _TooLongError
-        agreeing = self._otherwise(fixed)
+        better = agreeing = self._otherwise(fixed, [])
         if agreeing is None:
             return None
-        for number in range(len(self._wanted)):
-            if number not in agreeing:
-                agreeing = self._otherwise([*agreeing, number]) or agreeing
-        return [number for number in range(len(self._wanted)) if number not in agreeing]
+        while better is not None:
+            agreeing = self._near(better)
+            better = self._otherwise(agreeing, self._others(agreeing))
+        return self._others(agreeing)
 
-    def _otherwise(self, fixed: list[int]) -> list[int] | None:
-        """The literals that hold in some tick in which these hold and the outputs are others."""
+    def _others(self, numbers: list[int]) -> list[int]:
+        known = {*numbers}
+        return [number for number in range(len(self._wanted)) if number not in known]
+
+    def _otherwise(self, fixed: list[int], some: list[int]) -> list[int] | None:
+        """The literals of some tick with other outputs, in which these hold and, where there are any, one of `some`."""
+        self._checks += 1
+        if self._checks > MOST_CHECKS:
+            raise _TooLongError
+        self._solver.push()
+        if some:
+            self._solver.add(z3.Or([self._wanted[number] for number in some]))
         answer = self._solver.check(*self._always, *(self._wanted[number] for number in fixed))
+        model = self._solver.model() if answer == z3.sat else None
+        self._solver.pop()
         if answer == z3.unknown:
             raise _TooLongError
-        if answer == z3.unsat:
+        if model is None:
             return None
-        model = self._solver.model()
         return [n for n, one in enumerate(self._wanted) if z3.is_true(model.eval(one, model_completion=True))]
 
     def _irreducible(self) -> list[int]:

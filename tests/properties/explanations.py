@@ -206,7 +206,7 @@ def wrong_change(trial: Trial, tick: Tick, wanted: Wanted, found: WhyNot, best: 
         return f"{where}, but it can be" if reachable(trial, wanted) else ""
     if found.verdict == "undecided" or found.way is None:
         return where
-    if found.registers not in states(trial):
+    if found.verdict == "kept" and found.registers not in states(trial):
         return f"{where}, {found.past} cannot have been"
     if not fits(trial.done(found.atoms, found.registers), wanted) or not trial.assumed(found.atoms):
         return f"{where}, {found.changes} does not make it happen"

@@ -146,9 +146,9 @@ def test_a_condition_that_asks_its_own_past_is_explained_by_what_is_kept() -> No
     assert [*kept_by(plan.ways).values()] == [(0,)]
 
 
-def test_past_the_limit_of_rounds_no_literal_can_be_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_past_the_limit_of_checks_no_literal_can_be_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
     plan = compiled("(goalem (when (or (and (a) (b)) (c)) (do x on)))")
-    monkeypatch.setattr(why_module, "MOST_ROUNDS", 0)
+    monkeypatch.setattr(why_module, "MOST_CHECKS", 0)
     found = Reasons(plan.ways).why((True, True, True), ())
     assert not found.smallest
     assert [one.text for one in found.literals] in (["(c)"], ["(a)", "(b)"])
