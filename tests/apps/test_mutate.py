@@ -131,9 +131,9 @@ def test_conditions_operators_and_achieved_conditions_have_slips_too() -> None:
     assert [(one.where, one.change) for one in mutants(plan)] == [
         ("(c)", "(not (a)) became (a)"),
         ("(defop go)", "(at ?x) became (not (at ?x))"),
-        ("(goalem)", "(and (there home) (c)) became (not (and (there home) (c)))"),
-        ("(goalem)", "`and` became `or` in (and (there home) (c))"),
-        ("(goalem)", "(there home) became (not (there home))"),
+        ("(goalem)", "(and (there (home)) (c)) became (not (and (there (home)) (c)))"),
+        ("(goalem)", "`and` became `or` in (and (there (home)) (c))"),
+        ("(goalem)", "(there (home)) became (not (there (home)))"),
         ("(goalem)", "(c) became (not (c))"),
     ]
 
