@@ -102,7 +102,7 @@ class RuleItem(PlanItem):
     def runtest(self) -> None:
         assert isinstance(self.parent, PlanFile)
         plan = self.parent.plan
-        here = [fork for fork in plan.forks if fork.owner == self.rule.span]
+        here = plan.by_rule.get(self.rule.span)
         if not here:
             raise FailedError(f"{self.rule.span}: nothing asks for {self.rule.head}, so that none of it is ever done")
         served = taken(plan.reach, here[0].arms[0])

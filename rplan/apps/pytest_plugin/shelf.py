@@ -16,6 +16,7 @@ from rplan.apps.trying import Watch
 from rplan.apps.wiring import compile_file
 from rplan.driver import Compiled
 from rplan.lang.diagnostic import Diagnostic, PlanError, render
+from rplan.lang.source import Span
 from rplan.runtime.tick import Decision
 from rplan.ways.checks.branches import check_branches
 from rplan.ways.forks import Fork, forks
@@ -46,6 +47,14 @@ class Plan:
     @cached_property
     def forks(self) -> tuple[Fork, ...]:
         return forks(self.compiled.ways)
+
+    @cached_property
+    def by_rule(self) -> dict[Span, list[Fork]]:
+        """The forks of each rule, by its place; the first says whether the rule is served."""
+        found: dict[Span, list[Fork]] = {}
+        for fork in self.forks:
+            found.setdefault(fork.owner, []).append(fork)
+        return found
 
     @cached_property
     def never(self) -> tuple[Diagnostic, ...]:
