@@ -60,7 +60,17 @@ def holding(table: Table, situation: dict[str, bool]) -> list[int]:
 # --- the decision table ----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("source", [SMALL, (PLANS / "make_room" / "make_room.rplan").read_text(encoding="utf-8")])
+TANGLED = """(plan tangled)
+(defoutput a bool)
+(defoutput b bool)
+(goalem (and (if (x) (do a false) (if (y) (do a true) (do a false)))
+             (if (z) (do b true) (if (y) (do b false) (do anything)))))
+"""
+
+
+@pytest.mark.parametrize(
+    "source", [SMALL, TANGLED, (PLANS / "make_room" / "make_room.rplan").read_text(encoding="utf-8")]
+)
 def test_in_every_situation_one_row_holds_and_sets_what_the_circuit_sets(source: str) -> None:
     from rplan.apps.wiring import signatures
 
@@ -76,13 +86,14 @@ def test_in_every_situation_one_row_holds_and_sets_what_the_circuit_sets(source:
         assert table.rows[row].hole == ("hole" in on)
 
 
-def test_rows_that_differ_in_one_condition_alone_are_one_row() -> None:
-    source = "(plan p)\n(defoutput a bool)\n(goalem (if (x) (if (y) (do a true) (do a false)) (do a false)))\n"
+def test_rows_that_set_the_same_and_differ_in_one_condition_alone_are_one_row() -> None:
+    whens = "(if (y) (do a (p)) (do a (q)))", "(if (y) (do a (p)) (do a (r)))"
+    source = f"(plan p)\n(defoutput a command :idle (q))\n(goalem (if (x) {' '.join(whens)}))\n"
     rows = inspect(compiled(source)).table.rows
-    assert [(dict(row.when), row.sets) for row in rows] == [
-        ({"(x)": True, "(y)": True}, ("a=true",)),
-        ({"(x)": True, "(y)": False}, ("a=false",)),
-        ({"(x)": False}, ("a=false",)),
+    assert sorted((sorted(row.when), row.sets) for row in rows) == [
+        ([("(x)", False), ("(y)", False)], ("a=(r)",)),
+        ([("(x)", True), ("(y)", False)], ("a=(q)",)),
+        ([("(y)", True)], ("a=(p)",)),
     ]
 
 
@@ -106,6 +117,16 @@ def test_a_plan_of_many_rules_has_a_row_for_each_act_in_their_order() -> None:
     assert table.rows[150].when == (("(and (p150) (q14))", True),)
     said = text(inspect(compiled(many(30))), ["table"])
     assert "several rows may hold" in said and "by (ach r29)" in said
+
+
+def test_a_goal_with_alternatives_and_memory_inside_other_conditions_is_laid_open() -> None:
+    asks = "(and (not (held-for 0.2s (far))) (or (near) (held-for 0.3s (near))))"
+    source = (
+        f"(plan p :period 0.1s)\n(defoutput a bool)\n(goalem (or (if {asks} (do a true) (do a false)) (do a true)))\n"
+    )
+    found = inspect(compiled(source))
+    assert (found.goals.kind, found.goals.says, len(found.goals.inside)) == ("or", "one of", 2)
+    assert found.percepts[0].memory == ("(held-for 0.2s (far))", "(held-for 0.3s (near))")
 
 
 # --- text, drawings, page --------------------------------------------------------------------------

@@ -413,7 +413,10 @@ def test_wrong_worlds_and_ports_are_said(tmp_path: Path) -> None:
         "things: [{kind: post, at: [0.1, 0]}]\n",
         encoding="utf-8",
     )
+    picture = tmp_path / "map.yaml"
+    picture.write_text("image: none.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n", encoding="utf-8")
     cases = [
+        (picture, "occupied_thresh: this key is missing"),
         (wrong, "the scenario is wrong"),
         (robot, "the robot stands in"),
         (tmp_path / "no.yaml", "there is no scenario"),

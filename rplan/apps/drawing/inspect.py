@@ -21,7 +21,7 @@ from rplan.circuit.decisions import Leaf, Tree, decisions
 from rplan.circuit.passes.merge import Variable
 from rplan.circuit.stats import Stats, stats
 from rplan.driver import Compiled
-from rplan.goals.condition import Condition, Memory, percept_terms, print_condition
+from rplan.goals.condition import AllOf, AnyOf, Condition, Memory, Not, percept_terms, print_condition
 from rplan.goals.condition import atoms as atoms_of
 from rplan.goals.goal import And, Anything, Do, Goal, If, Impossible, Or, PrioAnd, Reduced, walk
 from rplan.lang.source import Span
@@ -284,11 +284,14 @@ TOP = "the top goal"
 
 
 def _memories(condition: Condition) -> Iterator[Memory]:
-    if isinstance(condition, Memory):
-        yield condition
-    parts = getattr(condition, "conditions", ())
-    for part in parts if isinstance(parts, tuple) else ():
+    match condition:
+        case Memory(conditions=parts):
+            yield condition
+        case AllOf(parts) | AnyOf(parts):
+            pass
+        case Not(inner):
+            parts = (inner,)
+        case _:
+            return
+    for part in parts:
         yield from _memories(part)
-    inner = getattr(condition, "condition", None)
-    if inner is not None:
-        yield from _memories(inner)

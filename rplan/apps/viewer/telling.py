@@ -94,7 +94,7 @@ def _bits(text: str) -> list[bool]:
 
 
 def circuit(compiled: Compiled) -> Json:
-    """{"stats", "svg", "cells": [[operation, operands or index …] …]}; svg is "" where it would be too large."""
+    """{"stats", "outputs", "svg", "cells": [[operation, operands or index …] …]}; svg is "" where it is too large."""
     costs, made = stats(compiled.circuit), compiled.circuit
     cells = [[c.op.value, *(c.operands or (c.index,))] for c in made.cells]
     return {
@@ -104,6 +104,7 @@ def circuit(compiled: Compiled) -> Json:
             "registers": costs.registers,
             "operations": costs.operations,
         },
+        "outputs": [port.name for port, _ in made.outputs],
         "svg": tagged(made) if costs.gates <= MOST_GATES else "",
         "cells": cells if costs.gates <= MOST_GATES else [],
     }
