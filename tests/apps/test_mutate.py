@@ -227,6 +227,12 @@ def test_a_share_that_is_too_small_exits_with_1(tmp_path: Path) -> None:
     assert run(tmp_path, RULE + FLEES, "--at-least", "61").exit_code == 1
 
 
+def test_of_many_changes_some_are_tried_spread_over_the_plan(tmp_path: Path) -> None:
+    found = values(tmp_path, RULE + FLEES, "--most", "2")
+    assert (found["possible"], [one["kind"] for one in found["mutants"]]) == (5, ["swap", "drop"])
+    assert run(tmp_path, RULE + FLEES, "--most", "2").stdout.startswith("guard: 2 of 5 changes (")
+
+
 def test_a_plan_in_which_nothing_can_be_changed_is_all_noticed(tmp_path: Path) -> None:
     assert values(tmp_path, "(goalem (do action (rest)))")["share"] == 1.0
 

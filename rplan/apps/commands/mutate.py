@@ -46,6 +46,7 @@ CHECK = "check"
 TRACES = 64
 TICKS = 24
 MOST_PAIRS = 2_000
+MOST = 1_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,10 +67,11 @@ KILLED, SURVIVED, EQUAL, INVALID, UNDECIDED = "killed", "survived", "equal", "in
 @click.option(
     "--tests", multiple=True, type=click.Path(exists=True, path_type=Path), help="Tests for pytest that use the plan."
 )
+@click.option("--most", type=click.IntRange(1), default=MOST, show_default=True, help="Try so many changes at most.")
 @click.option("--at-least", type=click.FloatRange(0, 100), help="Exit code 1 where a smaller share [%] is noticed.")
 @click.option("--json", "as_json", is_flag=True, help="For programs.")
 @talk.with_libraries
-def command(plan: str, tests: tuple[Path, ...], at_least: float | None, as_json: bool) -> None:
+def command(plan: str, tests: tuple[Path, ...], most: int, at_least: float | None, as_json: bool) -> None:
     """Change PLAN in one place at a time and run its tests, properties and golden ticks on what comes of it.
 
     A change that no test notices survives, and is shown with a situation in which a test would notice it. Changes that
@@ -78,12 +80,13 @@ def command(plan: str, tests: tuple[Path, ...], at_least: float | None, as_json:
     path = plan_file(plan)
     compiled = talk.compiled(path, allow_holes=True, as_json=as_json)
     begin = perf_counter()
-    fates = list(_fates(compiled, path, tests))
+    every = list(mutants(compiled.plan, compiled.source.name))
+    fates = list(_fates(compiled, path, tests, spread(every, most)))
     seconds = perf_counter() - begin
     if as_json:
-        talk.result(_plain(compiled, fates, seconds))
+        talk.result(_plain(compiled, fates, len(every), seconds))
     else:
-        _say(compiled, fates, seconds)
+        _say(compiled, fates, len(every), seconds)
     if at_least is not None and 100 * share(fates) < at_least:
         raise SystemExit(talk.PLAN_IS_WRONG)
 
@@ -95,14 +98,20 @@ def share(fates: Sequence[Fate]) -> float:
     return counts[KILLED] / every if every else 1.0
 
 
+def spread(every: Sequence[Mutant], most: int) -> list[Mutant]:
+    """At most so many of them, evenly from all over the plan."""
+    if len(every) <= most:
+        return list(every)
+    return [every[number * len(every) // most] for number in range(most)]
+
+
 # --- one mutant after the other ---
 
 
-def _fates(compiled: Compiled, path: Path, tests: Sequence[Path]) -> Iterator[Fate]:
+def _fates(compiled: Compiled, path: Path, tests: Sequence[Path], every: Sequence[Mutant]) -> Iterator[Fate]:
     with deep_recursion(), no_collection():
         trial = _Trial(compiled, _golden(compiled, path))
         trial.check_itself()
-        every = list(mutants(compiled.plan, compiled.source.name))
         first = [trial.fate(mutant) for mutant in every]
         left = [n for n, fate in enumerate(first) if fate.verdict in (SURVIVED, UNDECIDED)]
         if tests and left:
@@ -299,9 +308,10 @@ def _by_pytest(
 # --- what is said ---
 
 
-def _say(compiled: Compiled, fates: Sequence[Fate], seconds: float) -> None:
+def _say(compiled: Compiled, fates: Sequence[Fate], every: int, seconds: float) -> None:
     counts = Counter(one.verdict for one in fates)
-    click.echo(f"{compiled.goals.name}: {len(fates)} changes ({seconds:.2f} s)")
+    of = f" of {every}" if every > len(fates) else ""
+    click.echo(f"{compiled.goals.name}: {len(fates)}{of} changes ({seconds:.2f} s)")
     apart = counts[KILLED] + counts[SURVIVED] + counts[UNDECIDED]
     click.echo(f"  {counts[KILLED]} of {apart} noticed ({int(100 * share(fates))} %){_by(fates)}")
     rest = [
@@ -332,10 +342,11 @@ def _kind(by: str) -> str:
     return known.get(first, "pytest" if "::" in by else "golden ticks")
 
 
-def _plain(compiled: Compiled, fates: Sequence[Fate], seconds: float) -> Mapping[str, object]:
+def _plain(compiled: Compiled, fates: Sequence[Fate], every: int, seconds: float) -> Mapping[str, object]:
     counts = Counter(one.verdict for one in fates)
     return {
         "plan": compiled.goals.name,
+        "possible": every,
         "share": round(share(fates), 4),
         "counts": {verdict: counts[verdict] for verdict in (KILLED, SURVIVED, UNDECIDED, EQUAL, INVALID)},
         "seconds": round(seconds, 3),
