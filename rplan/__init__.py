@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from rplan.lang.source import Source
     from rplan.runtime.controller import Controller, Tick
     from rplan.runtime.tick import Decider
+    from rplan.runtime.why import why, why_not
 
 __all__ = [
     "Circuit",
@@ -36,6 +37,8 @@ __all__ = [
     "Tick",
     "compile_plan",
     "load",
+    "why",
+    "why_not",
 ]
 
 _HOMES = {
@@ -51,6 +54,8 @@ _HOMES = {
     "Tick": "runtime.controller",
     "compile_plan": "driver",
     "load": "driver",
+    "why": "runtime.why",
+    "why_not": "runtime.why",
 }
 
 

@@ -1,7 +1,8 @@
 """A run as one page: an HTML file that plays a recording in any browser, without a network.
 
-Takes: a `Recording` and where to write. Gives: one self-contained file; `pack` is its data as a JSON value.
-Leaves alone: how the page looks and plays (replay.html beside this file), and the judgement of the run.
+Takes: a `Recording` and where to write. Gives: one self-contained file; `pack` is its data as a JSON value, `Packing`
+the same tick by tick for who watches a run while it goes on. Leaves alone: how the page looks and plays (replay.html
+beside this file), the judgement of the run, and what only those know who know the plan (`Telling`).
 
 The data lie in the page as base64 of a zlib stream of JSON, packed by columns: moving numbers become whole
 millimetres and milliradians (`Track`: differences from row to row), everything else is listed once and referred to
@@ -15,12 +16,12 @@ import html
 import json
 import math
 import zlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
 from pathlib import Path
 
-from behaviours.interface import Ranges
+from behaviours.interface import Ranges, Reading
 from sim.recording import Json, Recording, json_text
 
 MILLI, CENTI = 1000, 100
@@ -33,6 +34,18 @@ SCAN_S, BEAMS = 0.2, 180
 WORLD_TRACKS = ("robot", "odometry", "head")
 WORLD_RUNS = ("contacts", "on_board", "stage")
 PLAN_RUNS = ("inputs", "registers", "hole", "outputs", "sent", "way", "started", "stopped", "faults", "reports")
+
+
+@dataclass(frozen=True, slots=True)
+class Telling:
+    """What is added to a page by someone who knows the plan.
+
+    parts: names and values beside those of `pack`. tick: what is added to the plan's part of a tick, by name; each name
+    becomes a run.
+    """
+
+    parts: Json
+    tick: Callable[[Json], Json]
 
 
 @dataclass(slots=True)
@@ -120,54 +133,84 @@ def _command(world: Json, actuator: str) -> object:
     return _part(world, "command").get(actuator)
 
 
+def world_rows(world: Json) -> Iterator[tuple[str, int, object]]:
+    """What moves in a tick: (track, steps a unit, row)."""
+    for name in WORLD_TRACKS:
+        yield name, MILLI, world.get(name)
+    for name, pose in _part(world, "movers").items():
+        yield f"mover {name}", MILLI, pose
+    yield "sonar", CENTI, world.get("sonar")
+    yield "ir", MILLI, _fixation(world, "ir", ("detected", "offset", "strength", "pan"))
+    yield "stereo", MILLI, _fixation(world, "stereo", ("pan", "tilt", "range"))
+    yield "drive", MILLI, _command(world, "drive")
+    yield "look", MILLI, _command(world, "head")
+
+
 @dataclass(slots=True)
-class _Packing:
+class Packing:
+    """A run on its way into a page. A tick is added, then what was sensed in it."""
+
     tracks: dict[str, Track] = field(default_factory=dict)
     runs: dict[str, Run] = field(default_factory=dict)
+    rays: dict[str, object] = field(default_factory=dict)
+    milliseconds: list[int | None] = field(default_factory=list)
+    _due: float = -math.inf
+    _every: int = 1
 
-    def track(self, tick: int, name: str, row: object, scale: int = MILLI) -> None:
-        self.tracks.setdefault(name, Track(scale)).add(tick, row)
-
-    def world(self, tick: int, world: Json) -> None:
-        for name in WORLD_TRACKS:
-            self.track(tick, name, world.get(name))
-        for name, pose in _part(world, "movers").items():
-            self.track(tick, f"mover {name}", pose)
-        self.track(tick, "sonar", world.get("sonar"), CENTI)
-        self.track(tick, "ir", _fixation(world, "ir", ("detected", "offset", "strength", "pan")))
-        self.track(tick, "stereo", _fixation(world, "stereo", ("pan", "tilt", "range")))
-        self.track(tick, "drive", _command(world, "drive"))
-        self.track(tick, "look", _command(world, "head"))
+    def tick(self, tick: Json, more: Json | None = None) -> None:
+        """Add a tick; more: what is told beside it, by name."""
+        index, t, world, plan = len(self.milliseconds), tick.get("t"), _part(tick, "world"), tick.get("plan")
+        self.milliseconds.append(round(t * 1000) if isinstance(t, int | float) else index * 100)
+        for name, scale, row in world_rows(world):
+            self.tracks.setdefault(name, Track(scale)).add(index, row)
         for name in WORLD_RUNS:
-            self.runs.setdefault(name, Run()).add(tick, world.get(name))
+            self._run(name, index, world.get(name))
+        if isinstance(plan, Mapping):
+            for name in PLAN_RUNS:
+                self._run(name, index, plan.get(name))
+            for name, value in (more or {}).items():
+                self._run(name, index, value)
 
-    def plan(self, tick: int, plan: Json) -> None:
-        for name in PLAN_RUNS:
-            self.runs.setdefault(name, Run()).add(tick, plan.get(name))
+    def _run(self, name: str, index: int, value: object) -> None:
+        self.runs.setdefault(name, Run()).add(index, value)
 
-
-def _sensed(packing: _Packing, recording: Recording, milliseconds: Sequence[int | None]) -> Json:
-    """Scans become a track; gives where the rays of lidar and sonars lie, as far as readings say it."""
-    index_at = {ms: index for index, ms in enumerate(milliseconds)}
-    lie: dict[str, object] = {}
-    due, every = -math.inf, 1
-    for reading in recording.readings:
-        scan, index = reading.lidar, index_at.get(round(reading.stamp * 1000))
-        if "sonar" not in lie and reading.sonar is not None:
-            lie["sonar"] = _ring(reading.sonar, reading.skirt)
-        if scan is None or index is None or not scan.fresh or reading.stamp < due or not scan.ranges.size:
-            continue
-        if "scan" not in lie:
-            every = -(-scan.ranges.size // BEAMS)
-            lie["scan"] = {
+    def reading(self, index: int, reading: Reading) -> None:
+        """Add the scan that was sensed in a tick, if it is time for one, and where rays lie."""
+        scan = reading.lidar
+        if "sonar" not in self.rays and reading.sonar is not None:
+            self.rays["sonar"] = _ring(reading.sonar, reading.skirt)
+        if scan is None or not scan.fresh or reading.stamp < self._due or not scan.ranges.size:
+            return
+        if "scan" not in self.rays:
+            self._every = -(-scan.ranges.size // BEAMS)
+            self.rays["scan"] = {
                 "mount": [scan.mount.x, scan.mount.y, scan.mount.theta],
-                "bearings": [round(bearing, 4) for bearing in scan.bearings[::every].tolist()],
+                "bearings": [round(bearing, 4) for bearing in scan.bearings[:: self._every].tolist()],
                 "max_range": scan.max_range,
             }
-        ranges = [value if math.isfinite(value) else None for value in scan.ranges[::every].tolist()]
-        packing.track(index, "scan", ranges, CENTI)
-        due = reading.stamp + SCAN_S - 1e-6
-    return lie
+        ranges = [value if math.isfinite(value) else None for value in scan.ranges[:: self._every].tolist()]
+        self.tracks.setdefault("scan", Track(CENTI)).add(index, ranges)
+        self._due = reading.stamp + SCAN_S - 1e-6
+
+    def last(self) -> Json:
+        """What a tick and its reading added last: {"t" [ms], "tracks": name -> row, "runs": name -> value, "rays"}."""
+        index = len(self.milliseconds) - 1
+        return {
+            "t": self.milliseconds[index],
+            "tracks": {name: one.rows[-1] for name, one in self.tracks.items() if one.at and one.at[-1] == index},
+            "runs": {name: _rounded(one.last) for name, one in self.runs.items() if one.at and one.at[-1] == index},
+            "rays": self.rays,
+        }
+
+    def packed(self) -> dict[str, object]:
+        """{"rays", "ticks", "t" [ms], "tracks", "runs"}."""
+        return {
+            "rays": self.rays,
+            "ticks": len(self.milliseconds),
+            "t": _differences(self.milliseconds),
+            "tracks": {name: track.packed() for name, track in self.tracks.items()},
+            "runs": {name: run.packed() for name, run in self.runs.items()},
+        }
 
 
 def _ring(waist: Ranges, skirt: Ranges | None) -> Json:
@@ -176,29 +219,24 @@ def _ring(waist: Ranges, skirt: Ranges | None) -> Json:
     return {"bearings": [round(b, 4) for b in bearings], "waist": len(waist.bearings), "mount": waist.mount_radius}
 
 
-def pack(recording: Recording, verdict: str = "") -> Json:
-    """All that the page shows: {"header", "verdict", "cut_short", "ticks", "t" [ms], "rays", "tracks", "runs"}."""
-    packing, milliseconds = _Packing(), list[int | None]()
-    for index, tick in enumerate(recording.ticks):
-        t = tick.get("t")
-        milliseconds.append(round(t * 1000) if isinstance(t, int | float) else index * 100)
-        packing.world(index, _part(tick, "world"))
-        if isinstance(tick.get("plan"), Mapping):
-            packing.plan(index, _part(tick, "plan"))
-    rays = _sensed(packing, recording, milliseconds)
-    return {
-        "header": recording.header,
-        "rays": rays,
-        "verdict": verdict,
-        "cut_short": recording.cut_short,
-        "ticks": len(milliseconds),
-        "t": _differences(milliseconds),
-        "tracks": {name: track.packed() for name, track in packing.tracks.items()},
-        "runs": {name: run.packed() for name, run in packing.runs.items()},
-    }
+def pack(recording: Recording, verdict: str = "", telling: Telling | None = None) -> Json:
+    """All that the page shows: {"header", "verdict", "cut_short", "ticks", "t" [ms], "rays", "tracks", "runs"}, and
+    what is told beside it."""
+    packing = Packing()
+    for tick in recording.ticks:
+        plan = tick.get("plan")
+        packing.tick(tick, telling.tick(plan) if telling is not None and isinstance(plan, Mapping) else None)
+    index_at = {ms: index for index, ms in enumerate(packing.milliseconds)}
+    for reading in recording.readings:
+        index = index_at.get(round(reading.stamp * 1000))
+        if index is not None:
+            packing.reading(index, reading)
+    head = {"header": recording.header, "verdict": verdict, "cut_short": recording.cut_short}
+    return {**(telling.parts if telling is not None else {}), **head, **packing.packed()}
 
 
-def _title(header: Json) -> str:
+def title(header: Json) -> str:
+    """What a run is called: its plan and its scenario."""
     scenario = header.get("scenario")
     names = [
         _part(header, "plan").get("name"),
@@ -207,13 +245,17 @@ def _title(header: Json) -> str:
     return " · ".join([str(name) for name in names if name] or ["a run"])
 
 
-def write_replay(recording: Recording, path: Path | str, verdict: str = "") -> None:
+def write_replay(recording: Recording, path: Path | str, verdict: str = "", telling: Telling | None = None) -> None:
     """Write the page that plays the recording; `verdict` is a line of text for its head. An existing file is replaced.
 
     Raises OSError where it cannot be written, RecordingError where the recording is damaged.
     """
-    packed = zlib.compress(json_text(pack(recording, verdict)).encode(), 9)
-    page = files("sim").joinpath("replay.html").read_text(encoding="utf-8")
-    page = page.replace("{{data}}", base64.b64encode(packed).decode("ascii"), 1)
-    page = page.replace("{{title}}", html.escape(_title(recording.header)), 1)
+    packed = zlib.compress(json_text(pack(recording, verdict, telling)).encode(), 9)
+    page = template().replace("{{data}}", base64.b64encode(packed).decode("ascii"), 1)
+    page = page.replace("{{title}}", html.escape(title(recording.header)), 1)
     Path(path).write_text(page, encoding="utf-8")
+
+
+def template() -> str:
+    """The page, with `{{data}}` and `{{title}}` still to be put in."""
+    return files("sim").joinpath("replay.html").read_text(encoding="utf-8")

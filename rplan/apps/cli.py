@@ -19,15 +19,21 @@ COMMANDS = {
     "export": "Make a table or a film of a recording.",
     "fmt": "Lay out the text of plans, comments and all.",
     "import": "Make a scenario of a world of another format.",
+    "inspect": "Show how a plan decides: table, goals, circuit, percepts.",
     "list": "List plans, libraries and what they offer.",
+    "mutate": "Say whether the tests of a plan notice a slip in it.",
     "prove": "Prove what a plan promises, or show how it breaks it.",
     "repair": "Make a whole file of a recording that was cut short.",
+    "replay": "Make a page that plays a recording.",
     "reproduce": "Run the experiments of a paper again, its figures beside ours.",
     "simulate": "Drive a robot through a world by a plan.",
     "sweep": "Run many episodes of a plan and keep a row of each.",
     "test": "Run the tests that stand in a plan.",
     "tick": "Run a plan alone: percepts in, outputs out, one JSON object a line.",
+    "view": "Watch a plan while its simulation runs.",
     "ways": "List the ways of a plan; --paper counts them as the paper does.",
+    "why": "Say why a tick did what it did, and what lost.",
+    "why-not": "Say what would have made a tick do otherwise.",
 }
 USED_WRONGLY = 2
 INTERNAL = 70
@@ -42,7 +48,7 @@ class Commands(click.Group):
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:  # noqa: ARG002
         if name not in COMMANDS:
             return None
-        command = import_module(f"rplan.apps.commands.{name}{'_' if iskeyword(name) else ''}").command
+        command = import_module(f"rplan.apps.commands.{name.replace('-', '_')}{'_' if iskeyword(name) else ''}").command
         assert isinstance(command, click.Command)
         return command
 

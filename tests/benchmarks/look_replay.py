@@ -17,8 +17,8 @@ from pathlib import Path
 
 import numpy as np
 
+from rplan.apps.viewer.page import write_page
 from sim.recording import Recorder, read
-from sim.replay import write_replay
 
 PLAN = """\
 ; Find and fetch, after Bonasso, Antonisse and Slack 1992, Figure 1.
@@ -385,7 +385,8 @@ def main() -> int:
         record(run)
     begin = time.perf_counter()
     page = out / "run.html"
-    write_replay(read(run), page)
+    why_not = write_page(read(run), page)
+    print(f"the page has no circuit: {why_not}" if why_not else "the page has its circuit")
     print(f"page: {page.stat().st_size / 1e6:.2f} MB, written in {time.perf_counter() - begin:.2f} s")
     url = page.resolve().as_uri()
     shots = {
@@ -394,6 +395,8 @@ def main() -> int:
         "search": ("1280,800", "#t=40"),
         "follow": ("1280,800", "?theme=dark#t=250&follow=1"),
         "end": ("1280,800", "#t=719"),
+        "circuit": ("1280,800", "#t=205&tab=circuit"),
+        "circuit-dark": ("1280,800", "?theme=dark#t=215.5&tab=circuit"),
     }
     for name, (size, where) in shots.items():
         browse(url + where, f"--window-size={size}", f"--screenshot={out / name}.png")

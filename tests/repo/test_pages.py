@@ -81,13 +81,13 @@ def test_the_readme_explains_a_plan_that_stands_in_a_file(pages: Pages, root: Pa
 
 
 def test_every_command_has_a_section(pages: Pages, root: Path) -> None:
-    heads = re.findall(r"^## rplan (\w+)$", pages[root / "docs" / "reference" / "commands.md"], re.MULTILINE)
+    heads = re.findall(r"^## rplan ([\w-]+)$", pages[root / "docs" / "reference" / "commands.md"], re.MULTILINE)
     assert heads == list(COMMANDS)
 
 
 def test_every_option_of_every_command_is_on_its_page(pages: Pages, root: Path) -> None:
     page = pages[root / "docs" / "reference" / "commands.md"]
-    sections = dict(re.findall(r"^## rplan (\w+)\n(.*?)(?=^## |\Z)", page, re.MULTILINE | re.DOTALL))
+    sections = dict(re.findall(r"^## rplan ([\w-]+)\n(.*?)(?=^## |\Z)", page, re.MULTILINE | re.DOTALL))
     missing = [
         f"{name} {option}" for name in COMMANDS for option in options_of(name) if f"`{option}" not in sections[name]
     ]

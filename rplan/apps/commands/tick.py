@@ -51,7 +51,7 @@ def command(
 def _over_lines(compiled: Compiled, source: BinaryIO) -> None:
     decide = decider(compiled)
     trace = Trace(compiled.ways)
-    keys = _Keys(compiled)
+    keys = Keys(compiled)
     number = 0
     for line_number, raw in enumerate(source, start=1):
         line = _text(raw, line_number)
@@ -102,7 +102,7 @@ def _text(raw: bytes, number: int) -> str:
         raise InputError(f"line {number}: not text in UTF-8") from None
 
 
-class _Keys:
+class Keys:
     """Which keys a line may have."""
 
     def __init__(self, compiled: Compiled) -> None:

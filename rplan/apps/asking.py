@@ -1,0 +1,306 @@
+"""Which tick of which plan a question is about.
+
+Takes: a recording and a time, or a plan with percepts and a trace. Gives: `Moment`: the compiled plan, the atoms and
+registers of the tick, and what each output was before. Leaves alone: the answer; see commands/why.py and why_not.py.
+
+The plan of a recording is compiled again from the text that stands in its header, with the texts that it includes.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import click
+
+from rplan.apps import talk
+from rplan.apps.commands.tick import Keys
+from rplan.apps.files import InputError, plan_file, unreadable
+from rplan.apps.wiring import compile_source, decider
+from rplan.driver import Compiled
+from rplan.lang.diagnostic import PlanError
+from rplan.lang.include import OpenFile
+from rplan.lang.source import Source, Span
+from rplan.lang.units import BadNumberError, read_number
+from rplan.runtime.encode import PerceptError, PerceptValue
+from rplan.runtime.tick import Decider, Decision
+from rplan.runtime.trace import texts
+from rplan.ways.situations import nothing
+from sim.recording import MAGIC, RecordingError, read
+
+LATE = 1e-6
+"""Times nearer than this [s] are one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Since:
+    """An output has had its value since tick `tick` (time [s]); before it had `before`, None for open or no tick."""
+
+    tick: int
+    time: float
+    before: str | None
+    first: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """One tick. time: of the tick [s]; percepts: their values, None where only the atoms are known.
+
+    sent: output -> what its channel was sent, after idle and held values; since: output -> since when.
+    """
+
+    compiled: Compiled
+    tick: int
+    time: float
+    atoms: tuple[bool, ...]
+    registers: tuple[bool, ...]
+    sent: Mapping[str, str | None]
+    since: Mapping[str, Since]
+    percepts: Mapping[str, PerceptValue] | None = None
+
+    def place(self, span: Span) -> str:
+        """A place without the folder."""
+        return f"{Path(span.file).name}:{span.line}"
+
+
+def with_moment(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The argument and the options of a command that say which tick is meant; see `moment`."""
+    for add in (
+        click.option("--json", "as_json", is_flag=True, help="For programs."),
+        click.option(
+            "--trace", type=click.Path(path_type=Path), help="Ticks of a plan before, as `rplan tick` reads them."
+        ),
+        click.option("--given", metavar="PERCEPTS", help="Percepts of a tick of a plan: 'NAME, NAME=NUMBER'."),
+        click.option("--at", type=float, metavar="SECONDS", help="Which tick of a recording."),
+    ):
+        command = add(command)
+    return talk.with_libraries(command)
+
+
+def moment(about: str, at: float | None, given: str | None, trace: Path | None, *, as_json: bool = False) -> Moment:
+    """The tick that is asked about; `InputError` where there is none, leaves with 1 where the plan is wrong."""
+    if is_recording(Path(about)):
+        if given is not None or trace is not None:
+            raise InputError("--given and --trace go with a plan; a recording has its own percepts")
+        try:
+            return _recorded(Path(about), at)
+        except RecordingError as error:
+            raise InputError(str(error)) from None
+        except OSError as error:
+            unreadable(Path(about), error)
+    if at is not None:
+        raise InputError("--at goes with a recording; --trace and --given say which tick of a plan is meant")
+    if given is None and trace is None:
+        raise InputError("say which tick is meant: --given 'PERCEPT, PERCEPT=NUMBER', or --trace FILE")
+    return _alone(talk.compiled(plan_file(about), allow_holes=True, as_json=as_json), given, trace)
+
+
+def is_recording(path: Path) -> bool:
+    """Whether the file is a recording, or is called like one."""
+    if path.suffix == ".mcap":
+        return True
+    try:
+        with path.open("rb") as stream:
+            return stream.read(len(MAGIC)) == MAGIC
+    except OSError:
+        return False
+
+
+@dataclass(slots=True)
+class _Before:
+    """What each output has been sent, and since when."""
+
+    last: Mapping[str, str | None] = field(default_factory=dict)
+    since: dict[str, Since] = field(default_factory=dict)
+
+    def add(self, tick: int, time: float, sent: Mapping[str, str | None]) -> None:
+        for output, value in sent.items():
+            if output not in self.last or self.last[output] != value:
+                self.since[output] = Since(tick, time, self.last.get(output), output not in self.last)
+        self.last = sent
+
+
+# --- recordings -------------------------------------------------------------------------------------
+
+
+def _recorded(path: Path, at: float | None) -> Moment:
+    recording = read(path)
+    compiled = _compiled_again(path, recording.header.get("plan"))
+    before = _Before()
+    found: tuple[int, float, Mapping[str, object]] | None = None
+    last = 0.0
+    for number, time, plan in _ticks(recording.ticks):
+        last = time
+        if at is None or not time <= at + LATE:
+            continue
+        found = (number, time, plan)
+        before.add(number, time, _shown(plan))
+    if at is None:
+        raise InputError(f"say when: --at SECONDS ({path} lasts from 0 s to {last:g} s)")
+    if found is None or not at <= last + compiled.goals.period + LATE:
+        raise InputError(f"--at {at:g}: {path} lasts from 0 s to {last:g} s")
+    number, time, plan = found
+    atoms, registers = _bits(path, plan, compiled)
+    return Moment(compiled, number, time, atoms, registers, before.last, before.since)
+
+
+def _ticks(ticks: Iterable[Mapping[str, object]]) -> Iterator[tuple[int, float, Mapping[str, object]]]:
+    """Number, time [s] and the plan's part of every tick in which the plan decided."""
+    for number, tick in enumerate(ticks):
+        time, plan = tick.get("t"), tick.get("plan")
+        if isinstance(time, int | float) and isinstance(plan, Mapping):
+            yield number, float(time), plan
+
+
+def _shown(plan: Mapping[str, object]) -> dict[str, str | None]:
+    """What each output set or, where the way left it open, what was sent."""
+    outputs, sent = plan.get("outputs"), plan.get("sent")
+    if not isinstance(outputs, Mapping) or not isinstance(sent, Mapping):
+        return {}
+    every = {output: sent.get(output) if value is None else value for output, value in outputs.items()}
+    return {output: _text(value) for output, value in every.items()}
+
+
+def _text(value: object) -> str | None:
+    return value if value is None or isinstance(value, str) else json.dumps(value)
+
+
+def _bits(path: Path, plan: Mapping[str, object], compiled: Compiled) -> tuple[tuple[bool, ...], tuple[bool, ...]]:
+    wanted = (compiled.ways.asking, compiled.ways.driving)
+    found = [tuple(bit == "1" for bit in str(plan.get(name, ""))) for name in ("inputs", "registers")]
+    if (len(found[0]), len(found[1])) != wanted:
+        raise _read_otherwise(path)
+    return found[0], found[1]
+
+
+def _read_otherwise(path: Path) -> InputError:
+    return InputError(
+        f"{path}: this rplan reads the plan in it otherwise than the one that recorded it; record it again"
+    )
+
+
+def _compiled_again(path: Path, header: object) -> Compiled:
+    if not isinstance(header, Mapping) or not isinstance(header.get("text"), str):
+        raise InputError(f"{path} holds no plan: only runs of a plan can be asked why")
+    source = Source(str(header.get("file", "plan.rplan")), str(header["text"]))
+    try:
+        compiled = compile_source(
+            source, allow_holes=True, open_file=_included(header.get("included")), libraries=talk.libraries()
+        )
+    except PlanError as error:
+        talk.say(error.diagnostics, error.texts or {source.name: source.text})
+        raise InputError(f"{path}: the plan in it does not compile with the libraries that there are") from None
+    inputs = [atom.text for atom in compiled.ways.atoms[: compiled.ways.asking]]
+    if header.get("inputs") != inputs:
+        raise _read_otherwise(path)
+    return compiled
+
+
+def _included(texts: object) -> OpenFile:
+    """Gives the texts in the order in which they were opened then."""
+    rest = [one for one in texts if isinstance(one, Mapping)] if isinstance(texts, Sequence) else []
+
+    def open_file(name: str) -> Source:
+        if not rest:
+            raise FileNotFoundError(2, "it is not in the recording", name)
+        return Source(name, str(rest.pop(0).get("text", "")))
+
+    return open_file
+
+
+# --- plans alone --------------------------------------------------------------------------------------
+
+
+def _alone(compiled: Compiled, given: str | None, trace: Path | None) -> Moment:
+    decide, keys, before = decider(compiled), Keys(compiled), _Before()
+    period = compiled.goals.period
+    percepts: Mapping[str, PerceptValue] = {}
+    decision: Decision | None = None
+    number = -1
+    for line, text in [] if trace is None else _lines(trace):
+        percepts = _read(keys, text, line, f"{trace}: ")
+        decision = _decided(decide, keys, percepts, line, f"{trace}: ")
+        number += 1
+        before.add(number, number * period, texts(decision.sent))
+    if given is not None:
+        values = json.dumps(_given(given, compiled), ensure_ascii=False)
+        percepts = nothing(compiled.ways) | dict(_read(keys, values, 1, "--given: "))
+        decision = _decided(decide, keys, percepts, 1, "--given: ")
+        number += 1
+        before.add(number, number * period, texts(decision.sent))
+    if decision is None:
+        raise InputError(f"{trace} has no tick")
+    driving = {term.text: percepts[term.text] for term in compiled.goals.percepts(driving=True)}
+    return Moment(
+        compiled, number, number * period, decision.inputs, decision.registers, before.last, before.since, driving
+    )
+
+
+def _lines(trace: Path) -> Iterator[tuple[int, str]]:
+    try:
+        text = trace.read_bytes().decode("utf-8-sig", errors="replace")
+    except OSError as error:
+        unreadable(trace, error)
+    yield from ((number, line) for number, line in enumerate(text.splitlines(), start=1) if line.strip())
+
+
+def _read(keys: Keys, line: str, number: int, where: str) -> Mapping[str, PerceptValue]:
+    try:
+        return keys.read(line, number)
+    except InputError as error:
+        raise _placed(error, where) from None
+
+
+def _decided(decide: Decider, keys: Keys, percepts: Mapping[str, PerceptValue], number: int, where: str) -> Decision:
+    try:
+        return decide.tick(percepts)
+    except PerceptError as error:
+        raise _placed(keys.wrong(number, error), where) from None
+
+
+def _placed(error: InputError, where: str) -> InputError:
+    """The error with the name of where it is; what is given by hand has no lines."""
+    said = error.format_message()
+    return InputError(where + (said.removeprefix("line 1: ") if where.startswith("--") else said))
+
+
+def _given(text: str, compiled: Compiled) -> dict[str, PerceptValue]:
+    """`NAME, NAME=VALUE, …` as keys and values; a name alone is true."""
+    values: dict[str, PerceptValue] = {}
+    for part in split(text):
+        name, equals, value = (word.strip() for word in part.rpartition("=")) if "=" in part else (part.strip(), "", "")
+        if not name or name in values:
+            raise InputError(f"--given: `{part.strip()}`: " + ("it is there twice" if name else "a percept is wanted"))
+        function = compiled.goals.functions.get(name.removeprefix("(").removesuffix(")"))
+        unit = function.type.unit if function is not None and function.type is not None else ""
+        values[name] = _value(part.strip(), value, unit) if equals else True
+    return values
+
+
+def _value(part: str, text: str, unit: str) -> PerceptValue:
+    if text in ("true", "false"):
+        return text == "true"
+    try:
+        number, found = read_number(text)
+        if found in ("", unit):
+            return number
+        raise InputError(f"--given: `{part}`: its unit is {unit or 'none'}, not {found}")
+    except BadNumberError as error:
+        hint = f" ({error.hint})" if error.hint else ""
+        wrong = f"{error}{hint}" if text[:1].isdigit() else "true, false or a number is wanted"
+        raise InputError(f"--given: `{part}`: {wrong}") from None
+
+
+def split(text: str) -> list[str]:
+    """The parts between commas that stand outside parentheses; none of an empty text."""
+    parts, depth = [""], 0
+    for letter in text:
+        depth += (letter == "(") - (letter == ")")
+        if letter == "," and depth <= 0:
+            parts.append("")
+        else:
+            parts[-1] += letter
+    return parts if text.strip() else []

@@ -1,0 +1,80 @@
+"""`rplan view PLAN`: watch a plan while its simulation runs."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+from importlib.util import find_spec
+from pathlib import Path
+
+import click
+
+from rplan.apps import talk
+from rplan.apps.files import InputError, plan_file, scenario_file, unreadable
+from rplan.apps.simulation import World, load_world
+from rplan.apps.viewer.session import Session
+from rplan.driver import Compiled
+from rplan.lang.diagnostic import PlanError
+from sim.scenarios.importers.imported import WorldFileError
+from sim.scenarios.schema import ScenarioError
+
+
+@click.command("view", short_help="Watch a plan while its simulation runs.")
+@click.argument("plan")
+@click.option("--scenario", help="As in `simulate`. Default: the only one beside the plan.")
+@click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Everything by chance follows it.")
+@click.option("--port", default=0, type=click.IntRange(0, 65535), help="Where to listen. Default: any that is free.")
+@click.option("--paused", is_flag=True, help="Wait for the page's play button.")
+@click.option("--allow-holes", is_flag=True, help="Drive a plan that has a hole.")
+@talk.with_libraries
+def command(plan: str, scenario: str | None, seed: int, port: int, paused: bool, allow_holes: bool) -> None:
+    """Simulate PLAN and show it live on a page of this machine: what it senses, decides and does, and why.
+
+    On the page one can pause, step, go back to what was, drag things, force percepts and stop at rules. Ctrl-C ends
+    it.
+    """
+    if find_spec("websockets") is None:
+        raise InputError("rplan view needs websockets: pip install 'rplan[view]'")
+    path = plan_file(plan)
+    compiled = talk.compiled(path, allow_holes=allow_holes)
+    session = _session(compiled, path, _world(scenario_file(scenario, path)), seed)
+    session.wishes.running = not paused
+    try:
+        asyncio.run(_watch(session, port))
+    except KeyboardInterrupt:
+        pass
+    except OSError as error:
+        raise InputError(f"port {port} of 127.0.0.1: {error.strerror or error}") from None
+    click.echo(f"ended at {session.episode.time:.1f} s of simulated time")
+
+
+def _world(path: Path) -> World:
+    try:
+        return load_world(path)
+    except ScenarioError as error:
+        raise InputError("the scenario is wrong\n" + "\n".join(f"  {p}" for p in error.problems)) from None
+    except WorldFileError as error:
+        raise InputError(str(error)) from None
+    except OSError as error:
+        unreadable(path, error)
+
+
+def _session(compiled: Compiled, path: Path, world: World, seed: int) -> Session:
+    try:
+        return Session(compiled, world, seed, talk.libraries())
+    except PlanError as error:
+        talk.wrong(error, path)
+    except ScenarioError as error:
+        raise InputError("\n".join(map(str, error.problems))) from None
+
+
+async def _watch(session: Session, port: int) -> None:
+    from rplan.apps.viewer.server import Viewer, watch
+
+    def ready(viewer: Viewer) -> None:
+        click.echo(f"watch it at {viewer.address}  (Ctrl-C ends)")
+
+    stop = asyncio.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        asyncio.get_running_loop().add_signal_handler(number, stop.set)
+    await watch(session, port, ready, stop)

@@ -1,0 +1,122 @@
+"""An inspection as text.
+
+Takes: an `Inspection`. Gives: the lines of each of its parts. Leaves alone: the terminal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import takewhile
+
+from rplan.apps.drawing.inspect import Branch, Inspection, Row, Table
+
+WIDEST = 24
+"""So many conditions have a column each; of more, each row says those that it asks."""
+RANKED = "several rows may hold: one gives way to those above it with which it does not go together"
+MARKS = {True: "✓", False: "✗", None: "·"}
+
+
+def table_text(inspection: Inspection) -> str:
+    """The decision table: ✓ must hold, ✗ must not, · does not matter."""
+    table = inspection.table
+    lines = list(_columns(table) if len(table.conditions) <= WIDEST else _listed(table))
+    if not table.exclusive:
+        lines.append(RANKED)
+    return "\n".join(lines)
+
+
+def _columns(table: Table) -> Iterator[str]:
+    width = len(str(len(table.conditions)))
+    for number, name in enumerate(table.conditions, start=1):
+        yield f"{number:>{width + 2}}  {name}"
+    yield ""
+    if table.conditions:
+        yield "  " + " ".join(f"{number:>{width}}" for number in range(1, len(table.conditions) + 1))
+    for row in table.rows:
+        when = dict(row.when)
+        marks = " ".join(f"{MARKS[when.get(name)]:>{width}}" for name in table.conditions)
+        yield f"  {marks}  {_sets(row)}".rstrip()
+        yield from (f"  {' ' * len(marks)}  {line}" for line in _about(row))
+
+
+def _listed(table: Table) -> Iterator[str]:
+    """Of each row what it does not share with the one above."""
+    before: Sequence[tuple[str, bool]] = ()
+    for number, row in enumerate(table.rows, start=1):
+        same = len(list(takewhile(lambda pair: pair[0] == pair[1], zip(before, row.when, strict=False))))
+        literals = [f"{MARKS[value]} {name}" for name, value in row.when[same:]]
+        shared = [f"as above up to {row.when[same - 1][0]}"] if same else []
+        yield f"{number:>4}  {_sets(row)}"
+        yield f"      when {', '.join([*shared, *literals]) or 'always'}"
+        yield from (f"      {line}" for line in _about(row))
+        before = row.when
+
+
+def _sets(row: Row) -> str:
+    return "HOLE" if row.hole else " ".join(row.sets) or "(sets nothing)"
+
+
+def _about(row: Row) -> Iterator[str]:
+    if row.rules:
+        yield f"by {', '.join(row.rules)}"
+    if row.given_up:
+        yield f"gives up {', '.join(row.given_up)}"
+
+
+def goals_text(inspection: Inspection) -> str:
+    """The goal tree."""
+    return "\n".join(_tree(inspection.goals, "", ""))
+
+
+def _tree(branch: Branch, first: str, rest: str) -> Iterator[str]:
+    words = {"if": f"if {branch.says}", "do": f"do {branch.says}"}.get(branch.kind, branch.says)
+    under = f"{branch.under}: " if branch.under else ""
+    line = f"  :{branch.line}" if branch.kind in ("rule", "do") and branch.line else ""
+    yield f"{first}{under}{words}{line}"
+    for number, one in enumerate(branch.inside):
+        last = number == len(branch.inside) - 1
+        yield from _tree(one, rest + ("└─ " if last else "├─ "), rest + ("   " if last else "│  "))
+
+
+def circuit_text(inspection: Inspection) -> str:
+    """What the circuit has, and what a tick of it costs whatever happens."""
+    costs, circuit = inspection.stats, inspection.circuit
+    kinds = [cell.op.value for cell in circuit.cells if cell.operands]
+    counts = ", ".join(f"{kinds.count(kind)} {kind}" for kind in ("and", "or", "not") if kind in kinds)
+    rows = [
+        ("inputs", f"{costs.inputs:,}"),
+        ("outputs", f"{costs.outputs:,}"),
+        ("gates", f"{costs.gates:,}" + (f" ({counts})" if counts else "")),
+        ("depth", f"{costs.depth:,} gates one after another"),
+        ("registers", f"{costs.registers:,}"),
+        ("every tick", f"{costs.operations:,} operations, the same whatever happens, every {inspection.period:g} s"),
+    ]
+    lines = [f"{name:<12}{value}" for name, value in rows]
+    lines += [f"{'register' if n == 0 else '':<12}{one.name}" for n, one in enumerate(circuit.registers)]
+    return "\n".join(lines)
+
+
+def percepts_text(inspection: Inspection) -> str:
+    """What each rule asks, and by how many each percept is asked."""
+    lines: list[str] = []
+    for reads in inspection.percepts:
+        lines.append(reads.rule + (f"  :{reads.line}" if reads.line else ""))
+        lines += [f"    {one}" for one in (*reads.percepts, *reads.memory)] or ["    asks nothing"]
+    counts: dict[str, int] = {}
+    for reads in inspection.percepts:
+        for one in reads.percepts:
+            counts[one] = counts.get(one, 0) + 1
+    often = sorted(counts.items(), key=lambda pair: -pair[1])
+    lines += ["", f"{len(counts)} percepts, by the number of rules that ask them:"]
+    return "\n".join([*lines, *(f"{count:>6}  {name}" for name, count in often)])
+
+
+PARTS = {"table": table_text, "goals": goals_text, "circuit": circuit_text, "percepts": percepts_text}
+
+
+def text(inspection: Inspection, parts: Sequence[str]) -> str:
+    """The parts, one below the other."""
+    if len(parts) == 1:
+        return PARTS[parts[0]](inspection)
+    titles = {"table": "Decision table", "goals": "Goals", "circuit": "Circuit", "percepts": "Percepts"}
+    return "\n\n".join(f"{titles[part]}\n\n{PARTS[part](inspection)}" for part in parts)

@@ -1,0 +1,146 @@
+"""What a page is told of its plan: the circuit with its wires, and which goals lost and what stood against them.
+
+Takes: a compiled plan, and tick by tick inputs and registers. Gives: plain JSON values, and the `Telling` of a
+recording whose header has its plan. Leaves alone: how the page shows them (sim/replay.html).
+
+A tick's answer follows from inputs and registers alone, so it is found once for each pair of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from rplan.apps.drawing.inspect_circuit import MOST_GATES, tagged
+from rplan.apps.libraries import Catalogue
+from rplan.apps.wiring import compile_source
+from rplan.circuit.stats import stats
+from rplan.driver import Compiled
+from rplan.goals.goal import Do, Reduced
+from rplan.lang.diagnostic import PlanError
+from rplan.lang.source import Source
+from rplan.ways.lost import lost
+from rplan.ways.way import taken_way
+from sim.recording import Json
+from sim.replay import Telling
+
+LOST = "lost"
+"""The run of a page that has what `Loser.lost` gives."""
+MOST_LOST = 60
+
+
+class Loser:
+    """Says for a tick which goals lost."""
+
+    def __init__(self, compiled: Compiled) -> None:
+        self._compiled = compiled
+        self._known: dict[tuple[str, str], list[Json]] = {}
+        self._fired: dict[tuple[str, str], tuple[str, ...]] = {}
+        heads = (node.goal.head for node in compiled.ways.layout.nodes if isinstance(node.goal, Reduced))
+        self.heads: tuple[str, ...] = tuple(dict.fromkeys(heads))
+
+    def lost(self, inputs: str, registers: str) -> list[Json]:
+        """The goals that set nothing in a tick, in textual order, without the parts of those that lost as a whole.
+
+        {"goal", "because", "reason", "line"}; bits as recordings have them. See rplan/ways/lost.py.
+        """
+        key = (inputs, registers)
+        if key not in self._known:
+            self._known[key] = list(self._lost(_bits(inputs), _bits(registers)))[:MOST_LOST]
+        return self._known[key]
+
+    def tick(self, plan: Json) -> Json:
+        """For the plan's part of a recorded tick."""
+        inputs, registers = plan.get("inputs"), plan.get("registers", "")
+        if not isinstance(inputs, str) or not isinstance(registers, str):
+            return {}
+        return {LOST: self.lost(inputs, registers)}
+
+    def firing(self, inputs: str, registers: str) -> tuple[str, ...]:
+        """The rules that set something in a tick, themselves or by their subgoals, each once."""
+        key = (inputs, registers)
+        if key not in self._fired:
+            values = self._values(_bits(inputs), _bits(registers))
+            ways = self._compiled.ways
+            acting = [n for n in ways.layout.nodes if isinstance(n.goal, Do) and values[ways.reached[n.number]]]
+            self._fired[key] = tuple(dict.fromkeys(head for node in acting for head in self._above(node.number)))
+        return self._fired[key]
+
+    def _above(self, number: int) -> Iterator[str]:
+        """The rules that a place is in, innermost first."""
+        nodes = self._compiled.ways.layout.nodes
+        while number >= 0:
+            goal = nodes[number].goal
+            if isinstance(goal, Reduced):
+                yield goal.head
+            number = nodes[number].parent
+
+    def _values(self, inputs: list[bool], registers: list[bool]) -> list[bool]:
+        ways = self._compiled.ways
+        atoms = (*inputs, *(False for _ in ways.atoms[len(inputs) :]))
+        every = (*registers, *(False for _ in ways.registers[len(registers) :]))
+        return ways.guards.evaluate(atoms, every)
+
+    def _lost(self, inputs: list[bool], registers: list[bool]) -> Iterator[Json]:
+        ways = self._compiled.ways
+        way = taken_way(ways, inputs, registers)
+        for one in () if way.hole else lost(ways, way, inputs, registers):
+            if not one.part_of:
+                line = one.span.line if one.span.file == self._compiled.source.name else None
+                yield {"goal": one.goal, "because": one.because, "reason": one.reason, "line": line}
+
+
+def _bits(text: str) -> list[bool]:
+    return [bit == "1" for bit in text]
+
+
+def circuit(compiled: Compiled) -> Json:
+    """{"stats", "outputs", "svg", "cells": [[operation, operands or index …] …]}; svg is "" where it is too large."""
+    costs, made = stats(compiled.circuit), compiled.circuit
+    cells = [[c.op.value, *(c.operands or (c.index,))] for c in made.cells]
+    return {
+        "stats": {
+            "gates": costs.gates,
+            "depth": costs.depth,
+            "registers": costs.registers,
+            "operations": costs.operations,
+        },
+        "outputs": [port.name for port, _ in made.outputs],
+        "svg": tagged(made) if costs.gates <= MOST_GATES else "",
+        "cells": cells if costs.gates <= MOST_GATES else [],
+    }
+
+
+def telling_of(compiled: Compiled) -> Telling:
+    """What the page of a run of this plan is told."""
+    return Telling({"circuit": circuit(compiled)}, Loser(compiled).tick)
+
+
+def telling(header: Json, libraries: Catalogue | None = None) -> tuple[Telling | None, str]:
+    """What the page of a recording is told, or why nothing can be; the plan's text is compiled again."""
+    plan = header.get("plan")
+    if not isinstance(plan, Mapping) or not isinstance(plan.get("text"), str):
+        return None, "no plan stands in its header"
+    included = plan.get("included")
+    texts = _texts(included if isinstance(included, Sequence) else ())
+
+    def open_file(path: str) -> Source:
+        name = path.replace("\\", "/").rpartition("/")[2]
+        if name not in texts:
+            raise FileNotFoundError(2, "it is not in the recording", path)
+        return Source(path, texts[name])
+
+    try:
+        source = Source(str(plan.get("file", "plan.rplan")), plan["text"])
+        compiled = compile_source(source, allow_holes=True, open_file=open_file, libraries=libraries)
+    except PlanError as error:
+        return None, f"its plan does not compile with the libraries at hand ({error.diagnostics[0].message})"
+    inputs = [atom.text for atom in compiled.ways.atoms[: compiled.ways.asking]]
+    if inputs != plan.get("inputs"):
+        return None, "this rplan reads its plan otherwise than the one that recorded it"
+    return telling_of(compiled), ""
+
+
+def _texts(included: Sequence[object]) -> dict[str, str]:
+    """File name -> text of what a recorded plan includes."""
+    found = (one for one in included if isinstance(one, Mapping))
+    return {str(one.get("file", "")): str(one.get("text", "")) for one in found}

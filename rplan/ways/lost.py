@@ -1,0 +1,153 @@
+"""Every goal that lost in a tick, and the one thing that stood against it.
+
+Takes: `Ways`, the values of its atoms and registers in one tick. Gives: `Lost`, one for each rule and act that the way
+taken does not serve, and one for each rule that is served by doing nothing. Leaves alone: what would have to change;
+see why_not.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal as Word
+
+from rplan.goals.condition import print_condition
+from rplan.goals.goal import Anything, Do, If, Or, PrioAnd, Reduced
+from rplan.lang.source import Span
+from rplan.ways.kept import Literal, Now
+from rplan.ways.layout import Node
+from rplan.ways.reduce import Ways
+from rplan.ways.way import TakenWay, label, wants
+
+Reason = Word["satisfied", "condition", "conflict", "alternative", "hole"]
+
+
+@dataclass(frozen=True, slots=True)
+class Lost:
+    """A goal that set nothing. because: in words; condition: of the `if` that decided, "" where none did.
+
+    reason: `satisfied`, it asks for nothing in this situation; `condition`, another branch is taken; `conflict`, a
+    member of a `prio-and` is given up; `alternative`, another way of an `or` is taken; `hole`, no way is open.
+    literals: what makes the condition as it is. part_of: the goal that lost as a whole, where this is a part of it.
+    span: of the goal; by: of what stood against it.
+    """
+
+    goal: str
+    reason: Reason
+    because: str
+    condition: str
+    literals: tuple[Literal, ...]
+    part_of: str
+    span: Span
+    by: Span
+
+
+def lost(ways: Ways, way: TakenWay, atoms: Sequence[bool], registers: Sequence[bool]) -> tuple[Lost, ...]:
+    """The goals that lost, in textual order; `way` is the one that these atoms and registers take."""
+    return _Looking(ways, way, atoms, registers).lost()
+
+
+class _Looking:
+    def __init__(self, ways: Ways, way: TakenWay, atoms: Sequence[bool], registers: Sequence[bool]) -> None:
+        self.ways, self.way = ways, way
+        self.nodes = ways.layout.nodes
+        self.now = Now(ways, atoms, registers)
+        every = (*atoms, *(False for _ in ways.atoms[len(atoms) :]))
+        values = ways.guards.evaluate(every, (*registers, *(False for _ in ways.registers[len(registers) :])))
+        self.values = values
+        self.served = [values[guard] for guard in ways.reached]
+        self.offered = {pick: values[guard] for pick, guard in ways.on_offer.items()}
+        given_up = [m.node for m in ways.layout.members[1:] if values[ways.given_up[m.number]]]
+        self.because = dict(zip(given_up, (one.because for one in way.given_up), strict=True))
+
+    def lost(self) -> tuple[Lost, ...]:
+        found = []
+        for node in self.nodes:
+            if not isinstance(node.goal, Reduced | Do):
+                continue
+            if not self.served[node.number]:
+                found.append(self._unserved(node))
+            elif isinstance(node.goal, Reduced) and not self._does_something(node.number):
+                found.append(self._satisfied(node))
+        return tuple(found)
+
+    def _unserved(self, node: Node) -> Lost:
+        """Blocked where the way leaves the path to it."""
+        outermost = node
+        while outermost.parent >= 0 and not self.served[outermost.parent]:
+            outermost = self.nodes[outermost.parent]
+        goal, part_of = label(node.goal), self._part_of(node)
+        if outermost.parent < 0:
+            return Lost(goal, "hole", "no way is open", "", (), "", node.goal.span, node.goal.span)
+        parent = self.nodes[outermost.parent]
+        match parent.goal:
+            case If(condition=condition, span=span):
+                literals = self.now.deciding(condition)
+                words = said(literals)
+                return Lost(
+                    goal, "condition", words, print_condition(condition), literals, part_of, node.goal.span, span
+                )
+            case Or(span=span):
+                because = self._instead(parent, outermost)
+                return Lost(goal, "alternative", because, "", (), part_of, node.goal.span, span)
+            case _:
+                assert isinstance(parent.goal, PrioAnd)
+                because, by = self.because[outermost.number], self._against(outermost)
+                return Lost(goal, "conflict", because, "", (), part_of, node.goal.span, by)
+
+    def _part_of(self, node: Node) -> str:
+        """The outermost rule around it that is not served or does nothing."""
+        found, here = "", node
+        while here.parent >= 0:
+            here = self.nodes[here.parent]
+            if isinstance(here.goal, Reduced) and not self._does_something(here.number):
+                found = here.goal.head
+        return found
+
+    def _against(self, member: Node) -> Span:
+        """The act that a member does not go together with, else the member itself."""
+        acts = {act.output: act for act in self.way.acts}
+        wanted = wants(self.ways, member.number, self.values)
+        other = [acts[do.output] for do in wanted if do.output in acts and acts[do.output].value != do.value.text]
+        return other[0].span if other else member.goal.span
+
+    def _instead(self, parent: Node, outermost: Node) -> str:
+        inside = self.ways.layout.inside[parent.number]
+        taken = next(number for number in inside if self.served[number])
+        place = f"{label(self.nodes[taken].goal)} is taken"
+        if self.offered.get((parent.number, inside.index(outermost.number)), False):
+            return f"{place}, which stands before it"
+        return f"{place}; this alternative does not go together with what is kept, or gives up more"
+
+    def _does_something(self, number: int) -> bool:
+        here = self.nodes[number]
+        if not self.served[number] or isinstance(here.goal, Do):
+            return self.served[number]
+        return any(map(self._does_something, self.ways.layout.inside[number]))
+
+    def _satisfied(self, node: Node) -> Lost:
+        """It does nothing since its last conditions say that there is nothing to do."""
+        asked = [self.nodes[number].goal for number in self._last_ifs(node.number, None)]
+        conditions = [goal for goal in asked if isinstance(goal, If)]
+        literals = tuple(dict.fromkeys(one for goal in conditions for one in self.now.deciding(goal.condition)))
+        words = f"already satisfied: {said(literals)}" if literals else "already satisfied: it asks for nothing"
+        condition = print_condition(conditions[0].condition) if len(conditions) == 1 else ""
+        by = conditions[0].span if conditions else node.goal.span
+        part_of = self._part_of(node)
+        return Lost(label(node.goal), "satisfied", words, condition, literals, part_of, node.goal.span, by)
+
+    def _last_ifs(self, number: int, asked: int | None) -> list[int]:
+        """The innermost `if`s above the places that are served by nothing."""
+        here = self.nodes[number].goal
+        if not self.served[number]:
+            return []
+        if isinstance(here, Anything):
+            return [] if asked is None else [asked]
+        below = number if isinstance(here, If) else asked
+        every = (one for child in self.ways.layout.inside[number] for one in self._last_ifs(child, below))
+        return [*dict.fromkeys(every)]
+
+
+def said(literals: Sequence[Literal]) -> str:
+    """Literals as words."""
+    return " and ".join(map(str, literals)) or "it is always so"

@@ -1,0 +1,236 @@
+"""Coverage of plans: ways, branches and conditions that the tests reached, as a table and as pages."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from rplan.apps import pytest_plugin
+from rplan.apps.pytest_plugin.coverage import ways_text
+from rplan.apps.pytest_plugin.shelf import Plan, Shelf
+from rplan.apps.testing import PlanUnderTest
+from rplan.ways.tally import reached
+
+pytest_plugins = ["pytester"]
+
+PLAN = """\
+(plan guard "Keeps its <distance>." :period 0.1s)
+(declare (near) bool "")
+(declare (lost) bool "")
+(declare (slow) bool "")
+(declare (flee) command "")
+(declare (rest) command "")
+(defoutput action command :idle (rest))
+(defcond (bad) (or (near) (lost)))
+(defgoalr (maint distance)
+  (if (and (bad) (not (slow)))
+      (do action (flee))
+      (if (slow) (do action (rest)) (do anything))))
+(goalem (maint distance))
+"""
+
+
+@pytest.fixture
+def plan(tmp_path: Path) -> Plan:
+    return opened(tmp_path, PLAN)
+
+
+def opened(folder: Path, text: str) -> Plan:
+    path = folder / "guard.rplan"
+    path.write_text(text, encoding="utf-8")
+    return Shelf().plan(path)
+
+
+def seen(plan: Plan):
+    return reached(plan.compiled.ways, plan.ticks, plan.reach)
+
+
+def under_test(plan: Plan) -> PlanUnderTest:
+    return PlanUnderTest(plan.compiled, watch=plan.watch)
+
+
+# --- what is counted --------------------------------------------------------------------------------
+
+
+def test_nothing_is_reached_without_a_tick(plan: Plan) -> None:
+    none = seen(plan)
+    assert (none.ways, none.ticks, none.arms, none.conditions) == (0, 0, (0, 4), (0, 8))
+
+
+def test_branches_are_counted_by_tick(plan: Plan) -> None:
+    under_test(plan).given("near").then().then("slow")
+    found = seen(plan)
+    assert (found.ways, found.ticks, found.arms) == (2, 3, (3, 4))
+    times = [arm.times for fork in found.forks for arm in fork.arms]
+    assert times == [3, 2, 1, 1, 0]
+
+
+def test_a_part_counts_where_it_alone_decides(plan: Plan) -> None:
+    under_test(plan).given("near", "lost")
+    parts = {(p.span.line, p.text): (p.as_true, p.as_false) for p in seen(plan).parts}
+    assert parts == {
+        (10, "(near)"): (False, False),
+        (10, "(lost)"): (False, False),
+        (10, "(slow)"): (False, True),
+        (12, "(slow)"): (False, False),
+    }
+    under_test(plan).given("near").then("not near", "lost").then("not lost").then("near", "slow")
+    assert seen(plan).conditions == (8, 8)
+
+
+def test_forms_with_memory_are_parts(tmp_path: Path) -> None:
+    forms = [
+        "(held-for 0.2s (near))",
+        "(within 0.2s (near))",
+        "(since (near) (lost))",
+        "(rose (near))",
+        "(at-least 2 (near))",
+        "(delay true (near))",
+        "(latch (near) (lost))",
+        "(once (and (near) (not (bad)) (or (lost) true)))",
+        "(since (not (near)) (lost))",
+    ]
+    for form in forms:
+        plan = opened(tmp_path, PLAN.replace("(and (bad) (not (slow)))", f"(and {form} (not (slow)))"))
+        under_test(plan).given().then("near").then().then("not near").then().then().then("lost").then("not lost")
+        under_test(plan).given("lost", "near").then("not lost").then("not near", "lost").then()
+        parts = {p.text.partition(" ")[0]: (p.as_true, p.as_false) for p in seen(plan).parts if p.span.line == 10}
+        assert parts[form.partition(" ")[0]] == (True, True) or "bad" in form, form
+
+
+def test_a_condition_that_asks_its_own_past_is_a_part(tmp_path: Path) -> None:
+    text = PLAN.replace("(or (near) (lost))", "(or (near) (delay false (bad)))")
+    plan = opened(tmp_path, text)
+    under_test(plan).given().then("near").then("not near").then("slow")
+    parts = {p.text: (p.as_true, p.as_false) for p in seen(plan).parts if p.span.line == 10}
+    assert parts == {"(near)": (True, True), "(delay false (bad))": (True, True), "(slow)": (True, True)}
+
+
+def test_a_branch_that_can_never_be_taken_does_not_count_against_the_tests(tmp_path: Path) -> None:
+    text = PLAN.replace(
+        "(if (slow) (do action (rest)) (do anything))",
+        "(if (not (bad)) (do anything) (if (slow) (do action (rest)) (do action (flee))))",
+    )
+    plan = opened(tmp_path, text)
+    under_test(plan).given().then("near").then("slow")
+    found = seen(plan)
+    assert found.arms == (5, 5)
+    assert [arm.arm.text for fork in found.forks for arm in fork.arms if arm.never] == [
+        "(not (slow)) → (do action (flee))"
+    ]
+
+
+def test_a_rule_in_two_places_is_one_rule(tmp_path: Path) -> None:
+    text = PLAN.replace("(goalem (maint distance))", "(goalem (if (lost) (maint distance) (maint distance)))")
+    plan = opened(tmp_path, text)
+    under_test(plan).given("near").then("lost")
+    found = seen(plan)
+    rule = next(fork for fork in found.forks if fork.fork.kind == "rule")
+    assert (len(rule.fork.nodes), rule.arms[0].times) == (2, 2)
+
+
+def test_a_rule_with_arguments_counts_its_parts_together(tmp_path: Path) -> None:
+    text = PLAN.replace("(goalem (maint distance))", "(goalem (and (maint distance) (ach go left) (ach go right)))")
+    text += '(declare (free (side symbol)) bool "")(defoutput side symbol)\n'
+    text += "(defgoalr (ach go ?where) (when (and (free ?where) (slow)) (do side ?where)))"
+    plan = opened(tmp_path, text)
+    under_test(plan).given("(free left)", "slow").then("not slow").then("slow", "not (free left)")
+    parts = {p.text: (p.as_true, p.as_false) for p in seen(plan).parts if p.rule == "(ach go ?where)"}
+    assert list(parts.values()) == [(True, True), (True, True)]
+
+
+def test_ways_are_counted_in_full_where_all_can_be_tried(plan: Plan, tmp_path: Path) -> None:
+    under_test(plan).given("near")
+    assert ways_text(plan, seen(plan)) == "1/3"
+    other = opened(tmp_path, PLAN.replace("(slow)))", "(held-for 1s (slow))))"))
+    assert ways_text(other, seen(other)).startswith("0/≥")
+
+
+# --- under pytest -----------------------------------------------------------------------------------
+
+TESTS = """
+(deftest flees (tick :given ((near true)) :expect ((action (flee)))))
+"""
+
+
+@pytest.fixture
+def run(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
+    (pytester.path / "guard.rplan").write_text(PLAN + TESTS, encoding="utf-8")
+    (pytester.path / "guard.ticks").write_text('["slow"]\n{"outputs": {"action": "(rest)"}}\n', encoding="utf-8")
+    pytester.makepyfile("def test_it(plan):\n    plan('guard.rplan').given('near').then().expect(action='flee')\n")
+    return lambda *arguments: pytester.runpytest_inprocess(*arguments, plugins=[pytest_plugin])
+
+
+def test_deftests_golden_ticks_and_fixtures_are_counted_together(run) -> None:
+    result = run("--rplan", "--rplan-coverage")
+    result.assert_outcomes(passed=4)
+    result.stdout.fnmatch_lines(
+        [
+            "*- coverage of plans -*",
+            "plan  *ticks * ways * branches * conditions",
+            "guard.rplan        4 * 2/3 * 3/4   75% * 3/8   37%",
+            "  12: (maint distance): not taken: (not (slow)) → (do anything)",
+            "  10: (maint distance): (near) never decided as false",
+        ]
+    )
+
+
+def test_without_a_plan_it_says_so(pytester: pytest.Pytester, run) -> None:
+    pytester.makepyfile(test_other="def test_it(): pass")
+    run("test_other.py", "--rplan-coverage").stdout.fnmatch_lines(["no plan was tested"])
+
+
+def test_pages_are_written_with_what_was_not_taken(pytester: pytest.Pytester, run) -> None:
+    result = run("--rplan", "--rplan-coverage=html:pages/here")
+    result.stdout.fnmatch_lines(["pages/here/guard.html"])
+    page = (pytester.path / "pages" / "here" / "guard.html").read_text(encoding="utf-8")
+    assert "Keeps its &lt;distance&gt;." in page
+    assert "prefers-color-scheme: dark" in page
+    assert '<span class="yes">(do action (flee))</span>' in page
+    assert '<span class="no">(do anything)</span>' in page
+    assert "(near) never decided as false" in page
+    assert "http" not in page
+
+
+def test_what_is_never_is_painted_so(pytester: pytest.Pytester, run) -> None:
+    text = PLAN.replace("(if (slow)", "(if (and (slow) (not (slow)))")
+    (pytester.path / "guard.rplan").write_text(text, encoding="utf-8")
+    run("--rplan-coverage=html:pages")
+    page = (pytester.path / "pages" / "guard.html").read_text(encoding="utf-8")
+    assert '<span class="never">(do action (rest))</span>' in page
+
+
+def test_plans_of_one_name_get_a_page_each(pytester: pytest.Pytester, run) -> None:
+    (pytester.path / "b").mkdir()
+    (pytester.path / "b" / "guard.rplan").write_text(PLAN, encoding="utf-8")
+    run("--rplan", "--rplan-coverage=html:pages")
+    assert sorted(path.name for path in (pytester.path / "pages").iterdir()) == ["guard-2.html", "guard.html"]
+
+
+def test_a_folder_that_cannot_be_written_is_said(run) -> None:
+    result = run("--rplan", "--rplan-coverage=html:guard.rplan/pages")
+    result.stdout.fnmatch_lines(["guard.rplan/pages: *"])
+    assert "Traceback" not in result.stdout.str()
+
+
+@pytest.mark.parametrize("asked", ["html", "html:", "guard.rplan"])
+def test_another_form_of_coverage_is_one_clear_error(asked: str, run) -> None:
+    result = run(f"--rplan-coverage={asked}")
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    result.stderr.fnmatch_lines([f"*--rplan-coverage={asked}: `=html:FOLDER` or `=table` is wanted"])
+
+
+def test_what_a_worker_saw_is_handed_over(plan: Plan, tmp_path: Path) -> None:
+    worker, here = Shelf(), Shelf()
+    path = tmp_path / "guard.rplan"
+    worker.under_test(path).given("near").then()
+    config = SimpleNamespace(workeroutput={}, stash={pytest_plugin.SHELF: worker})
+    pytest_plugin.pytest_sessionfinish(SimpleNamespace(config=config))
+    node = SimpleNamespace(workeroutput=config.workeroutput, config=SimpleNamespace(stash={pytest_plugin.SHELF: here}))
+    here.under_test(path).given("near")
+    pytest_plugin.pytest_testnodedown(node)
+    assert sum(here.plan(path).ticks.values()) == 3
+    pytest_plugin.pytest_testnodedown(SimpleNamespace(config=node.config))
