@@ -68,8 +68,11 @@ TANGLED = """(plan tangled)
 """
 
 
+SIMPLE = "(plan p)\n(defoutput a bool)\n(goalem (if (x) (do a false) (if (y) (do a true) (do a false))))\n"
+
+
 @pytest.mark.parametrize(
-    "source", [SMALL, TANGLED, (PLANS / "make_room" / "make_room.rplan").read_text(encoding="utf-8")]
+    "source", [SMALL, TANGLED, SIMPLE, (PLANS / "make_room" / "make_room.rplan").read_text(encoding="utf-8")]
 )
 def test_in_every_situation_one_row_holds_and_sets_what_the_circuit_sets(source: str) -> None:
     from rplan.apps.wiring import signatures

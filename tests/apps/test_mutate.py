@@ -169,6 +169,12 @@ def test_what_survives_is_shown_with_its_place_and_a_situation(tmp_path: Path) -
     ]
 
 
+def test_every_test_begins_on_a_plan_that_remembers_nothing(tmp_path: Path) -> None:
+    text = "(goalem (if (once (near)) (do action (flee)) (do action (rest))))\n" + FLEES + RESTS
+    (tmp_path / "guard.ticks").write_text('{}\n{"outputs": {"action": "(rest)"}}\n', encoding="utf-8")
+    assert values(tmp_path, text)["share"] == 1.0
+
+
 def test_golden_ticks_beside_the_plan_count(tmp_path: Path) -> None:
     (tmp_path / "any.ticks").write_text('; guard.rplan\n[]\n{"outputs": {"action": "(rest)"}}\n', encoding="utf-8")
     (tmp_path / "other.ticks").write_text("; other.rplan\n[3\n", encoding="utf-8")

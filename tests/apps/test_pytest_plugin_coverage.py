@@ -206,7 +206,9 @@ def test_what_is_never_is_painted_so(pytester: pytest.Pytester, run) -> None:
 def test_plans_of_one_name_get_a_page_each(pytester: pytest.Pytester, run) -> None:
     (pytester.path / "b").mkdir()
     (pytester.path / "b" / "guard.rplan").write_text(PLAN, encoding="utf-8")
-    run("--rplan", "--rplan-coverage=html:pages")
+    result = run("--rplan", "--rplan-coverage=html:pages")
+    result.stdout.fnmatch_lines(["b/guard.rplan        0 * 0/3 * 0/4    0% *", "guard.rplan          4 * 2/3 *"])
+    result.stdout.no_fnmatch_line("*not taken: (slow)*")
     assert sorted(path.name for path in (pytester.path / "pages").iterdir()) == ["guard-2.html", "guard.html"]
 
 

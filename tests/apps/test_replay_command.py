@@ -95,6 +95,17 @@ def test_a_rule_fires_where_it_or_a_subgoal_of_it_sets_something() -> None:
     assert "(maint runaway)" in loser.firing("1" + "0" * 11, "")
 
 
+def test_a_tick_says_which_conditions_alone_make_for_it() -> None:
+    loser = Loser(compile_file(FIND))
+    assert loser.enough("1" + "01" * 5 + "0", "") == [{"condition": "(anything-is-too-close)", "value": True}]
+    bodies = " ".join(f"(if (p{k}) (do a{k} true) (do anything))" for k in range(65))
+    outputs = "".join(f"(defoutput a{k} bool)\n" for k in range(65))
+    assert (
+        Loser(compile_plan(Source("p.rplan", f"(plan p)\n{outputs}(goalem (and {bodies}))\n"))).enough("1" * 65, "")
+        == []
+    )
+
+
 def test_a_circuit_that_is_too_large_is_not_drawn() -> None:
     bodies = [f"(if (and (p{k}) (q{k % 17})) (do action (a{k})) (do anything))" for k in range(600)]
     source = f"(plan p)\n(defoutput action command :idle (stop))\n(goalem (prio-and {' '.join(bodies)}))\n"

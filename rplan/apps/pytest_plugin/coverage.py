@@ -23,7 +23,7 @@ def show(shelf: Shelf, terminal: Any, folder: Path | None) -> None:
     """Write the table, and the pages where a folder is given."""
     found = {path: (plan, reached(plan.compiled.ways, plan.ticks, plan.reach)) for path, plan in shelf.plans.items()}
     terminal.write_sep("-", "coverage of plans")
-    for line in table({path.name: pair for path, pair in found.items()}):
+    for line in table({_named(path): pair for path, pair in found.items()}):
         terminal.write_line(line)
     if folder is None:
         return
@@ -46,10 +46,15 @@ def table(found: dict[str, tuple[Plan, Reached]]) -> Iterator[str]:
             f"{name:<{width}}  {seen.ticks:>7,}  {ways_text(plan, seen):>9}  "
             f"{share(*seen.arms):>14}  {share(*seen.conditions):>14}"
         )
-        missing = list(_missing(seen))
+        missing = list(_missing(seen)) if seen.ticks else []
         yield from (f"  {line}" for line in missing[:MOST_MISSING])
         if len(missing) > MOST_MISSING:
             yield f"  … and {len(missing) - MOST_MISSING} more"
+
+
+def _named(path: Path) -> str:
+    """The path from here, where it is below."""
+    return str(path.relative_to(Path.cwd())) if path.is_relative_to(Path.cwd()) else str(path)
 
 
 def ways_text(plan: Plan, seen: Reached) -> str:

@@ -20,12 +20,16 @@ from rplan.lang.diagnostic import PlanError
 from rplan.lang.source import Source
 from rplan.ways.lost import lost
 from rplan.ways.way import taken_way
+from rplan.ways.why import Reasons
 from sim.recording import Json
 from sim.replay import Telling
 
 LOST = "lost"
 """The run of a page that has what `Loser.lost` gives."""
+ENOUGH = "enough"
+"""The run that has what `Loser.enough` gives."""
 MOST_LOST = 60
+MOST_INPUTS, MOST_ASKED = 64, 500
 
 
 class Loser:
@@ -34,6 +38,8 @@ class Loser:
     def __init__(self, compiled: Compiled) -> None:
         self._compiled = compiled
         self._known: dict[tuple[str, str], list[Json]] = {}
+        self._enough: dict[tuple[str, str], list[Json]] = {}
+        self._reasons: Reasons | None = None
         self._fired: dict[tuple[str, str], tuple[str, ...]] = {}
         heads = (node.goal.head for node in compiled.ways.layout.nodes if isinstance(node.goal, Reduced))
         self.heads: tuple[str, ...] = tuple(dict.fromkeys(heads))
@@ -53,7 +59,22 @@ class Loser:
         inputs, registers = plan.get("inputs"), plan.get("registers", "")
         if not isinstance(inputs, str) or not isinstance(registers, str):
             return {}
-        return {LOST: self.lost(inputs, registers)}
+        return {LOST: self.lost(inputs, registers), ENOUGH: self.enough(inputs, registers)}
+
+    def enough(self, inputs: str, registers: str) -> list[Json]:
+        """Conditions that alone make for the outputs of a tick: {"condition", "value"}; see rplan/ways/why.py.
+
+        None are given for plans of more than `MOST_INPUTS` conditions, nor after `MOST_ASKED` different situations.
+        """
+        key = (inputs, registers)
+        ways = self._compiled.ways
+        if key not in self._enough:
+            if ways.asking > MOST_INPUTS or len(self._enough) >= MOST_ASKED:
+                return []
+            self._reasons = self._reasons or Reasons(ways)
+            found = self._reasons.why(_bits(inputs), _bits(registers)).literals
+            self._enough[key] = [{"condition": one.text, "value": one.value} for one in found]
+        return self._enough[key]
 
     def firing(self, inputs: str, registers: str) -> tuple[str, ...]:
         """The rules that set something in a tick, themselves or by their subgoals, each once."""
