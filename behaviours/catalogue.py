@@ -681,16 +681,17 @@ SENSORS = Library(
 
 # --- patrol -----------------------------------------------------------------------------------------
 
-_PATROL = _parameters(
-    PatrolSettings(),
-    ("length", "m", "Of the round, ahead of the start."),
-    ("width", "m", "Of the round, to the left of the start."),
-    ("within", "m", "A place has been visited this near to it."),
-) + (
+_PATROL = (
+    *_parameters(
+        PatrolSettings(),
+        ("length", "m", "Of the round, ahead of the start."),
+        ("width", "m", "Of the round, to the left of the start."),
+        ("within", "m", "A place has been visited this near to it."),
+    ),
     Parameter(
         "charger-x", "number", "m", PatrolSettings().charger_x, "Where to stand for charging, ahead of the start."
     ),
-    Parameter("charger-y", "number", "m", PatrolSettings().charger_y, "The same, to the left of it."),
+    Parameter("charger-y", "number", "m", PatrolSettings().charger_y, "Where to charge, to the left of the start."),
 )
 
 

@@ -20,10 +20,10 @@ from rich.text import Text
 from rplan.apps import talk
 from rplan.apps.files import InputError, plan_file, scenario_file, unreadable
 from rplan.apps.simulation import Run, World, load_world, simulate
+from rplan.apps.viewer.page import write_page
 from rplan.driver import Compiled
 from rplan.lang.diagnostic import PlanError
 from sim.recording import read
-from sim.replay import write_replay
 from sim.scenarios.importers.imported import WorldFileError
 from sim.scenarios.schema import ScenarioError
 
@@ -147,7 +147,7 @@ def _progress(limit: float) -> Iterator[Callable[[float, str], None] | None]:
 def _draw(recording: Path, replay: Path | None, plot: Path | None, verdict: str) -> None:
     if replay is not None:
         try:
-            write_replay(read(recording), replay, verdict)
+            write_page(read(recording), replay, verdict, talk.libraries())
         except OSError as error:
             unreadable(replay, error)
     if plot is not None:

@@ -17,10 +17,10 @@ from rplan.apps.reproduce.experiment import Asked, plan_at, scenario_at, variant
 from rplan.apps.reproduce.row import Case
 from rplan.apps.simulation import Run, World, load_world, simulate
 from rplan.apps.sweep.work import changed
+from rplan.apps.viewer.page import write_page
 from rplan.apps.wiring import compile_file
 from rplan.lang.suggest import close
 from sim.recording import Recording, read
-from sim.replay import write_replay
 from sim.scenarios.format import loads
 
 
@@ -74,7 +74,7 @@ def replay(shown: Shown, seed: int | None, file: Path) -> str:
     chosen = shown.case.seeds[0] if seed is None else seed
     with recorded(shown, chosen) as (run, recording):
         said = f"{shown.asked.row.name} ({shown.asked.preset}), {shown.case.name}, seed {chosen}: {in_words(run)}"
-        write_replay(recording, file, said)
+        write_page(recording, file, said)
     return said
 
 
