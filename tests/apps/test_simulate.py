@@ -289,4 +289,4 @@ def test_a_scenario_of_another_plan_is_found_by_its_folder_and_name() -> None:
     assert "fetch-by-operators in parking lot" in result.stdout
     without = simulate("fetch_by_operators", "--until", "1")
     assert without.exit_code == 2
-    assert "such as find_and_fetch/parking_lot, make_room/visit" in without.stderr
+    assert "find_and_fetch/parking_lot, make_room/visit" in without.stderr
