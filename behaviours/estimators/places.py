@@ -106,7 +106,9 @@ class Places:
             self.dead_end(pose)
 
     def _on_the_way(self, pose: Pose, goal: Pose, now: float) -> Pose:
-        if self.target is None or self._is_reached(pose, self.target):
+        if self.target is not None and self._is_reached(pose, self.target):
+            self._tried, self.target = (*self._tried, self.target), None
+        if self.target is None:
             self._choose(pose, goal, now)
         elif self._is_stalled(pose, now):
             self._give_up()
