@@ -14,7 +14,6 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-import networkx as nx
 import numpy as np
 
 from behaviours.cores.circles import Circle
@@ -30,10 +29,11 @@ HERE, GOAL = -1, -2
 class PlacesSettings:
     """Lengths [m], patience and linger [s], speed [m/s].
 
-    apart: between places on the way. same: nearer than this it is the same place. sight: a place sees so far.
-    least: shorter headings lead nowhere. half_width: of the lane that must be clear. linger: who has driven about longer
-    between two places makes no progress. turns: as many times may a place be entered again with the same goal. nearer: so much nearer to
-    the goal than ever before, the robot goes for it again. most: places are kept.
+    apart: between places on the way. same: nearer than this it is the same place. sight: headings are clear up to it;
+    least: shorter ones lead nowhere; half_width: of the lane that must be clear. turns: so often may a place be entered
+    with the same goal. linger: who drives about longer without coming to a place makes no progress. patience: so long
+    may the way to a frontier not get shorter. nearer: so much nearer to the goal than ever before, the robot goes for
+    it again. most: places are kept.
     """
 
     apart: float = 1.0
@@ -46,7 +46,7 @@ class PlacesSettings:
     patience: float = 20.0
     linger: float = 40.0
     speed: float = 0.2
-    most: int = 400
+    most: int = 150
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +85,7 @@ def as_way(a: int, b: int) -> Way:
     return (a, b) if a < b else (b, a)
 
 
-def reaches(x: float, y: float, circles: Sequence[Circle], settings: PlacesSettings) -> tuple[float, ...]:
+def look_about(x: float, y: float, circles: Sequence[Circle], settings: PlacesSettings) -> tuple[float, ...]:
     """How far [m] a lane from (x, y) is clear in each of HEADINGS headings, up to the sight."""
     turns = np.arange(HEADINGS) * (math.tau / HEADINGS)
     return tuple(clear_for(x, y, turns.tolist(), circles, settings))
@@ -121,12 +121,12 @@ def visit(atlas: Atlas, pose: Pose, circles: Sequence[Circle], spent: float, set
     near = _nearest(atlas, pose)
     if near is not None and _away(atlas.places[near], pose) <= settings.same:
         old = atlas.places[near]
-        fresh = reaches(old.x, old.y, circles, settings) if _away(old, pose) <= settings.same / 2 else old.reach
+        fresh = look_about(old.x, old.y, circles, settings) if _away(old, pose) <= settings.same / 2 else old.reach
         return _arrive(replace(atlas, places={**atlas.places, near: replace(old, reach=fresh)}), near, spent)
     if atlas.here is not None and _away(atlas.places[atlas.here], pose) < settings.apart:
         return atlas
     number = max(atlas.places, default=-1) + 1
-    place = Place(pose.x, pose.y, reaches(pose.x, pose.y, circles, settings))
+    place = Place(pose.x, pose.y, look_about(pose.x, pose.y, circles, settings))
     return _arrive(_bounded(replace(atlas, places={**atlas.places, number: place}), settings.most), number, spent)
 
 
@@ -167,6 +167,14 @@ def frontiers(atlas: Atlas, tried: Collection[Frontier], least: float, settings:
     return found
 
 
+def is_closed(atlas: Atlas, frontier: Frontier, circles: Sequence[Circle], settings: PlacesSettings) -> bool:
+    """Whether by what is known now the frontier cannot be driven to from its place."""
+    place = atlas.places[frontier.place]
+    away = math.hypot(frontier.x - place.x, frontier.y - place.y)
+    (clear,) = clear_for(place.x, place.y, [frontier.heading * math.tau / HEADINGS], circles, settings)
+    return clear < away - settings.same
+
+
 def is_seen(atlas: Atlas, frontier: Frontier, settings: PlacesSettings) -> bool:
     """Whether a place other than its own sees the frontier."""
     others = (place for number, place in atlas.places.items() if number != frontier.place)
@@ -184,6 +192,8 @@ def way_out(
 
     None where no frontier can be reached.
     """
+    import networkx as nx  # it takes long to import, and few runs come here
+
     if atlas.here is None:
         return None
     graph: nx.Graph[int] = nx.Graph()

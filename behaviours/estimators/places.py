@@ -20,6 +20,7 @@ from behaviours.cores.places import (
     Way,
     as_way,
     frontiers,
+    is_closed,
     is_seen,
     straight_to,
     visit,
@@ -47,12 +48,9 @@ class Places:
         """Nothing is known against any way to this goal."""
         self._goal, self._nearest = goal, math.inf
         self._entered: dict[int, int] = {}
-        self._forgive()
-        self._stop()
-
-    def _forgive(self) -> None:
         self._tried: tuple[Frontier, ...] = ()
         self._blocked: tuple[Way, ...] = ()
+        self._stop()
 
     def _stop(self) -> None:
         self.is_searching = False
@@ -76,7 +74,7 @@ class Places:
         if not self.is_searching:
             self._nearest = min(self._nearest, away)
             return goal
-        return self._on_the_way(pose, goal, now)
+        return self._on_the_way(pose, goal, circles, now)
 
     def dead_end(self, pose: Pose) -> None:
         """Progress has stopped or was turned back here."""
@@ -105,8 +103,10 @@ class Places:
         if self._entered[here] > self.settings.turns and not self.is_searching:
             self.dead_end(pose)
 
-    def _on_the_way(self, pose: Pose, goal: Pose, now: float) -> Pose:
-        if self.target is None or self._is_reached(pose, self.target):
+    def _on_the_way(self, pose: Pose, goal: Pose, circles: Sequence[Circle], now: float) -> Pose:
+        if self.target is not None and self._is_done_with(pose, self.target, circles):
+            self._mark(self.target)
+        if self.target is None:
             self._choose(pose, goal, now)
         elif self._is_stalled(pose, now):
             self._give_up()
@@ -115,9 +115,12 @@ class Places:
             return goal
         return self._next(pose, self.target)
 
-    def _is_reached(self, pose: Pose, target: Frontier) -> bool:
+    def _is_done_with(self, pose: Pose, target: Frontier, circles: Sequence[Circle]) -> bool:
+        """Whether the frontier is reached, or seen, or turns out to be none."""
         near = math.hypot(pose.x - target.x, pose.y - target.y) <= self.settings.same
-        return near or target.place not in self.atlas.places or is_seen(self.atlas, target, self.settings)
+        if near or target.place not in self.atlas.places or is_seen(self.atlas, target, self.settings):
+            return True
+        return not self._path and is_closed(self.atlas, target, circles, self.settings)
 
     def _choose(self, pose: Pose, goal: Pose, now: float) -> None:
         """The next frontier; where none is left, everything is forgiven and the goal tried again."""
@@ -159,7 +162,11 @@ class Places:
     def _give_up(self) -> None:
         """Block the way that is not to be driven, or call the frontier tried."""
         if self._path and self.atlas.here is not None and self._path[0] != self.atlas.here:
-            self._blocked += (as_way(self.atlas.here, self._path[0]),)
+            self._blocked = (*self._blocked, as_way(self.atlas.here, self._path[0]))[-self.settings.most :]
         elif self.target is not None:
-            self._tried += (self.target,)
+            self._mark(self.target)
         self.target = None
+
+    def _mark(self, target: Frontier) -> None:
+        """The frontier is not chosen again for this goal; no more are remembered than there are places."""
+        self._tried, self.target = (*self._tried, target)[-self.settings.most :], None
