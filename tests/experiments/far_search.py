@@ -1,13 +1,13 @@
 """Donors 25 to 60 feet away in any direction: how often they are found, and how soon.
 
 Takes: seeds, plans/fetch_far with other parameters. Gives: a line for each way to choose where to listen next.
-Leaves alone: how it is done. Run it with `python tests/experiments/far_search.py [SEEDS]`.
+Leaves alone: how it is done. Run it with `python tests/experiments/far_search.py --seeds 50`.
 """
 
 from __future__ import annotations
 
+import argparse
 import math
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -42,7 +42,9 @@ def lot(seed: int) -> World:
 
 def main() -> None:
     """Print a line for each way."""
-    seeds = int(sys.argv[1]) if len(sys.argv) > 1 else 50
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seeds", type=int, default=50, help="how many")
+    seeds = parser.parse_args().seeds
     for name, parameters in WAYS:
         compiled = plan(parameters)
         runs = [simulate(compiled, lot(seed), seed) for seed in range(seeds)]

@@ -1,13 +1,13 @@
 """The two searches over many seeds: how often they find the donor, and how well.
 
 Takes: seeds, worlds of plans/find_and_fetch/worlds. Gives: a table of counts. Leaves alone: the fetching.
-Run it with `python tests/experiments/searches.py [SEEDS]`.
+Run it with `python tests/experiments/searches.py --seeds 100`.
 """
 
 from __future__ import annotations
 
+import argparse
 import math
-import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -162,7 +162,9 @@ def _moves(compiled: Compiled, seeds: int) -> str:
 
 def main() -> None:
     """Print every row."""
-    seeds = int(sys.argv[1]) if len(sys.argv) > 1 else 20
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seeds", type=int, default=20, help="how many")
+    seeds = parser.parse_args().seeds
     plan, modern = paper(), from_horizon()
     for row in _directions(plan, seeds):
         print(row, flush=True)
