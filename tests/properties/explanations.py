@@ -72,8 +72,8 @@ class Tick:
 class Trial:
     """One plan, and every combination of percepts after some past."""
 
-    def __init__(self, text: str) -> None:
-        self.ways = reduced(text)
+    def __init__(self, plan: str | Ways) -> None:
+        self.ways = reduced(plan) if isinstance(plan, str) else plan
         self.circuit = passes.run(build(self.ways))
         self.names = [port.name for port, _ in self.circuit.outputs]
         self.asked = self.ways.atoms[: self.ways.asking]
