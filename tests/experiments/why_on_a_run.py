@@ -44,7 +44,7 @@ def main() -> int:
     trial = Trial(compiled.ways)
     for number in chosen(inputs, wanted.ticks):
         atoms = inputs[number]
-        values = {text: value for text, value in zip(trial.percepts, atoms, strict=True)}
+        values: dict[str, bool | float] = dict(zip(trial.percepts, atoms, strict=True))
         said = differs(trial, Tick(values, atoms, (), None))
         if said:
             print(f"tick {number} differs: {said}")
