@@ -217,6 +217,7 @@ def test_a_bar_shows_how_far_it_is_on_a_terminal(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(command, "Console", lambda **_: shown)
     with command._progress(2) as progress:
         progress({"row": "T1", "preset": "paper", "case": "short"})
+    assert "1/2" in shown.file.getvalue()
 
 
 # --- one episode --------------------------------------------------------------------------------------

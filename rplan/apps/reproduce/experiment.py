@@ -24,7 +24,7 @@ from rplan.apps.reproduce.watch import watch
 from rplan.apps.simulation import World, load_world
 from rplan.apps.sweep import processes
 from rplan.apps.sweep.grid import GridError, path, with_value
-from rplan.apps.sweep.processes import READY, Unfit, Worker, deaf_to_interrupts, one_thread_each
+from rplan.apps.sweep.processes import Worker, one_thread_each
 from rplan.apps.sweep.work import Change, Runner, Task, Variant, Work, changed, head, in_words
 from rplan.apps.wiring import compile_file
 from rplan.driver import Compiled
@@ -132,18 +132,7 @@ class Bench(Runner):
 
 def serve(connection: Connection) -> None:
     """What a worker does: as in sweeps, with a `Bench`."""
-    with deaf_to_interrupts():
-        try:
-            bench = Bench(connection.recv())
-        except Exception as error:
-            connection.send(Unfit(in_words(error)))
-            return
-        try:
-            connection.send(READY)
-            while (task := connection.recv()) is not None:
-                connection.send(bench.row(task))
-        except (EOFError, OSError):
-            return  # whoever asked is gone
+    processes.serve(connection, Bench)
 
 
 def start() -> Worker:

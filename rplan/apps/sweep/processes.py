@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
-from typing import Literal
+from typing import Any, Literal, Protocol
 
 from rplan.apps.sweep.work import Row, Rows, Runner, Task, Work, head, in_words
 
@@ -48,11 +48,22 @@ class Unfit:
 # --- the worker's side --------------------------------------------------------------------------------
 
 
-def serve(connection: Connection) -> None:
-    """What a worker does: work in, `READY` or `Unfit` out, then tasks in and rows out, until None or the end."""
+class Bench(Protocol):
+    """Where tasks become rows."""
+
+    def row(self, task: Any, /) -> Row:
+        """The row of a task."""
+        ...
+
+
+def serve(connection: Connection, set_up: Callable[[Any], Bench] = Runner) -> None:
+    """What a worker does: work in, `READY` or `Unfit` out, then tasks in and rows out, until None or the end.
+
+    set_up: what makes a bench of the work.
+    """
     with deaf_to_interrupts():
         try:
-            runner = Runner(connection.recv())
+            runner = set_up(connection.recv())
         except Exception as error:
             connection.send(Unfit(in_words(error)))
             return
