@@ -13,7 +13,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TypeVar
 
 from behaviours.competences.fixate import Fixate
 from behaviours.competences.keep_station import KeepStation, StationSettings
@@ -32,6 +32,7 @@ from behaviours.cores.nat import NatSettings
 from behaviours.cores.places import PlacesSettings
 from behaviours.cores.runaway import RunawaySettings
 from behaviours.cores.sectors import FINE, LidarRing, RingOf, skirt, waist
+from behaviours.declaring import boolean, chosen, command, number, parameters, positive, settings_of
 from behaviours.estimators import ir_search, stereo_search
 from behaviours.estimators.beacons import Beacons, BeaconSettings
 from behaviours.estimators.danger import Danger
@@ -50,46 +51,7 @@ from behaviours.estimators.sensed import Sensed, SensedSettings
 from behaviours.estimators.stereo_search import StereoSearch, StereoSettings
 from behaviours.interface import Channels, Function, Library, Offer, Parameter, Pose, Values, Workshop
 
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
-
 NAVIGATE = "move-according-to-NaT-plan"
-
-Settings = TypeVar("Settings", bound="DataclassInstance")
-Row = tuple[str, str, str]
-"""field of the settings, SI unit, doc"""
-
-
-def _parameters(defaults: DataclassInstance, *rows: Row) -> tuple[Parameter, ...]:
-    """Number parameters with the defaults of a settings class: `safety_radius` becomes `safety-radius`."""
-    return tuple(
-        Parameter(field.replace("_", "-"), "number", unit, float(getattr(defaults, field)), doc)
-        for field, unit, doc in rows
-    )
-
-
-def _settings(defaults: Settings, parameters: tuple[Parameter, ...], values: Values) -> Settings:
-    """The settings with the values of a plan put in; a count must be whole, every number finite and not negative."""
-    changes: dict[str, Any] = {}
-    for parameter in parameters:
-        field = parameter.name.replace("-", "_")
-        value = float(values.get(parameter.name, parameter.default))
-        if not 0.0 <= value < float("inf"):
-            raise ValueError(f"{parameter.name} must be finite and not negative, not {value}")
-        whole = isinstance(getattr(defaults, field), int)
-        if whole and not (value.is_integer() and value >= 1.0):
-            raise ValueError(f"{parameter.name} must be a whole number from 1 up, not {value}")
-        changes[field] = int(value) if whole else value
-    return replace(defaults, **changes)
-
-
-def _bool(name: str, doc: str) -> Function:
-    return Function(name, "bool", doc)
-
-
-def _command(name: str, doc: str, *actuators: str, reads: tuple[str, ...] = ()) -> Function:
-    return Function(name, "command", doc, actuators=actuators, reads=reads)
-
 
 # --- robot ----------------------------------------------------------------------------------------
 
@@ -108,7 +70,7 @@ ROBOT = Library(
     (
         Function("speed", "number", "Speed along the drive heading, negative backwards.", unit="m/s"),
         Function("time-since-start", "number", "Stamp of the latest reading.", unit="s"),
-        _command("stop", "Stand still; the head stays where it is.", "drive"),
+        command("stop", "Stand still; the head stays where it is.", "drive"),
     ),
     (),
     _build_robot,
@@ -116,7 +78,7 @@ ROBOT = Library(
 
 # --- runaway --------------------------------------------------------------------------------------
 
-_RUNAWAY = _parameters(
+_RUNAWAY = parameters(
     RunawaySettings(),
     ("safety_radius", "m", "A range below it, measured from the hull, is danger (printed in the paper)."),
     ("release", "m", "Danger ends this much beyond the safety radius (chosen here)."),
@@ -130,24 +92,10 @@ _RANGES = Parameter("ranges", "symbol", "", "sonar", "From `sonar` rings, or fro
 _HULL = Parameter("hull-radius", "number", "m", 0.35, "From its middle to the hull, with `:ranges lidar` alone.")
 
 
-def _chosen(parameter: Parameter, values: Values, *known: str) -> str:
-    """The symbol that a plan gives, one of the known."""
-    value = str(values.get(parameter.name, parameter.default))
-    if value not in known:
-        raise ValueError(f"{parameter.name} must be {' or '.join(known)}, not {value}")
-    return value
-
-
-def _positive(name: str, value: float) -> float:
-    if not 0.0 < value < math.inf:
-        raise ValueError(f"{name} must be finite and more than 0, not {value}")
-    return value
-
-
 def _build_runaway(values: Values, workshop: Workshop) -> Offer:
-    settings = _settings(RunawaySettings(), _RUNAWAY, values)
-    hull = _positive("hull-radius", float(values.get("hull-radius", _HULL.default)))
-    from_lidar = _chosen(_RANGES, values, "sonar", "lidar") == "lidar"
+    settings = settings_of(RunawaySettings(), _RUNAWAY, values)
+    hull = positive("hull-radius", float(values.get("hull-radius", _HULL.default)))
+    from_lidar = chosen(_RANGES, values, "sonar", "lidar") == "lidar"
     rings: tuple[RingOf, ...] = (LidarRing(hull),) if from_lidar else (waist, skirt)
     danger = workshop.share(Danger, lambda: Danger(settings, rings))
     return Offer(
@@ -160,9 +108,9 @@ RUNAWAY = Library(
     "runaway",
     "Away from what is suddenly close, forward or backward, whichever is quicker.",
     (
-        _bool("anything-is-too-close", "An echo of either ring lies within the safety radius."),
+        boolean("anything-is-too-close", "An echo of either ring lies within the safety radius."),
         Function("nearest-range", "number", "The shortest range of both rings, from the hull.", unit="m"),
-        _command("move-away-from-danger", "Drive away from the echoes within the safety radius.", "drive"),
+        command("move-away-from-danger", "Drive away from the echoes within the safety radius.", "drive"),
     ),
     (*_RUNAWAY, _RANGES, _HULL),
     _build_runaway,
@@ -170,7 +118,7 @@ RUNAWAY = Library(
 
 # --- natigation -----------------------------------------------------------------------------------
 
-_ARRIVAL = _parameters(
+_ARRIVAL = parameters(
     ArrivalSettings(),
     (
         "goal_tolerance",
@@ -183,7 +131,7 @@ _ARRIVAL = _parameters(
     ("stand_off_angle", "rad", "Half the angle about the goal's direction that is watched for it (chosen here)."),
     ("same_goal", "m", "A goal that moves by more is another goal (chosen here)."),
 )
-_CIRCLES = _parameters(
+_CIRCLES = parameters(
     CircleSettings(),
     ("obstacles", "", "Greatest number of obstacle circles (printed in the paper)."),
     ("readings", "", "Readings a circle holds, one a sweep; each lives as many sweeps (printed in the paper)."),
@@ -193,7 +141,7 @@ _CIRCLES = _parameters(
     ("half_cone", "rad", "Half the cone of a sonar; 0 puts every echo on the axis (chosen here)."),
     ("neighbours_near", "m", "Echoes of neighbours that differ by less are of one thing (chosen here)."),
 )
-_NAT = _parameters(
+_NAT = parameters(
     NatSettings(),
     ("robot_width", "m", "Diameter of the hull."),
     ("clearance", "m", "Kept to obstacles; more than the safety radius of runaway (chosen here)."),
@@ -214,14 +162,14 @@ _NAT = _parameters(
     ("steering_gain", "", "Turn rate per heading error, 1/s (chosen here)."),
     ("max_turn_rate", "rad/s", "Greatest turn rate (chosen here)."),
 )
-_DEADLOCK = _parameters(
+_DEADLOCK = parameters(
     DeadlockSettings(),
     ("progress", "m", "A robot that does not leave a circle of this radius makes no progress (chosen here)."),
     ("patience", "s", "Without progress for this long, a group is passed on the other side (chosen here)."),
     ("lock", "s", "For this long it is kept to that side (chosen here)."),
     ("new_goal", "m", "A goal that jumps by more is planned for without the spins of before (chosen here)."),
 )
-_GAZE = _parameters(
+_GAZE = parameters(
     GazeSettings(),
     ("gaze_beyond", "m", "The head looks this far past the goal, in the direction of the goal pose (chosen here)."),
     ("pan_step", "rad", "The head is moved by no less, so that it settles (chosen here)."),
@@ -243,7 +191,7 @@ _SWITCHES = tuple(
         ("places", "Where the robot has been is remembered, and dead ends are left by ways not tried."),
     )
 )
-_EVIDENCE = _parameters(
+_EVIDENCE = parameters(
     EvidenceSettings(),
     ("cell", "m", "Side of a cell of the grid of `memory` and `tracking`."),
     ("reach", "m", "The memory gives circles within this distance."),
@@ -251,7 +199,7 @@ _EVIDENCE = _parameters(
     ("kept_obstacles", "", "Greatest number of circles of the memory."),
     ("was_free", "s", "An echo from where it was free this short a time ago is one of something that moves."),
 )
-_GATE = _parameters(
+_GATE = parameters(
     GateSettings(),
     ("horizon", "s", "What moves and meets the robot later than this does not count."),
     ("keep_off", "m", "A gap to what moves that is smaller counts as a collision."),
@@ -265,9 +213,9 @@ _PLACE = (
 
 def _is_on(name: str, values: Values) -> bool:
     """Whether a switch is on: by itself, or by the preset."""
-    modern = _chosen(_PRESET, values, "paper", "modern") == "modern"
+    modern = chosen(_PRESET, values, "paper", "modern") == "modern"
     switch = next(parameter for parameter in _SWITCHES if parameter.name == name)
-    return {"preset": modern, "on": True, "off": False}[_chosen(switch, values, "preset", "on", "off")]
+    return {"preset": modern, "on": True, "off": False}[chosen(switch, values, "preset", "on", "off")]
 
 
 def _set_goal(values: Values) -> Pose:
@@ -281,12 +229,12 @@ def _obstacles(values: Values, nat: NatSettings, ring_of: RingOf) -> Obstacles:
     perception = PerceptionSettings(
         memory=_is_on("memory", values),
         tracking=_is_on("tracking", values),
-        evidence=_settings(EvidenceSettings(), _EVIDENCE, values),
+        evidence=settings_of(EvidenceSettings(), _EVIDENCE, values),
     )
-    circles = _settings(CircleSettings(), _CIRCLES, values)
+    circles = settings_of(CircleSettings(), _CIRCLES, values)
     if isinstance(ring_of, LidarRing) and (perception.memory or perception.tracking):
         circles, ring_of = replace(circles, half_cone=0.0), LidarRing(nat.robot_width / 2, FINE)
-    deadlock = _settings(DeadlockSettings(), _DEADLOCK, values)
+    deadlock = settings_of(DeadlockSettings(), _DEADLOCK, values)
     lane = PlacesSettings(half_width=nat.robot_width / 2 + LANE, speed=nat.max_speed or PlacesSettings().speed)
     return Obstacles(
         circles,
@@ -301,17 +249,17 @@ def _obstacles(values: Values, nat: NatSettings, ring_of: RingOf) -> Obstacles:
 
 
 def _build_natigation(values: Values, workshop: Workshop) -> Offer:
-    arrival = _settings(ArrivalSettings(), _ARRIVAL, values)
-    nat = _settings(NatSettings(), _NAT, values)
+    arrival = settings_of(ArrivalSettings(), _ARRIVAL, values)
+    nat = settings_of(NatSettings(), _NAT, values)
     if _is_on("commitment", values):
         nat = replace(nat, minds=AHEAD)
-    from_lidar = _chosen(_RANGES, values, "sonar", "lidar") == "lidar"
-    ring_of: RingOf = LidarRing(_positive("robot-width", nat.robot_width) / 2) if from_lidar else waist
+    from_lidar = chosen(_RANGES, values, "sonar", "lidar") == "lidar"
+    ring_of: RingOf = LidarRing(positive("robot-width", nat.robot_width) / 2) if from_lidar else waist
     goal = _share(workshop, NavigationGoal, lambda: NavigationGoal(arrival, ring_of), arrival, "natigation")
     obstacles = workshop.share(Obstacles, lambda: _obstacles(values, nat, ring_of))
-    perception, gates = obstacles.perception, _settings(GateSettings(), _GATE, values)
+    perception, gates = obstacles.perception, settings_of(GateSettings(), _GATE, values)
     traffic = Traffic(perception.moving_points, perception.velocities, gates) if perception.settings.tracking else None
-    natigate = Natigate(obstacles.plan_to, nat, _settings(GazeSettings(), _GAZE, values), ring_of, traffic)
+    natigate = Natigate(obstacles.plan_to, nat, settings_of(GazeSettings(), _GAZE, values), ring_of, traffic)
     set_goal = _set_goal(values)
     return Offer(
         percepts={"there-is-a-goal": goal.exists, "we-are-at-the-goal": lambda: goal.is_reached},
@@ -324,10 +272,10 @@ NATIGATION = Library(
     "natigation",
     "To the goal among obstacles by navigation templates.",
     (
-        _bool("there-is-a-goal", "The channel `goal` had a value in the last tick."),
-        _bool("we-are-at-the-goal", "The robot stands at the goal of the last tick."),
+        boolean("there-is-a-goal", "The channel `goal` had a value in the last tick."),
+        boolean("we-are-at-the-goal", "The robot stands at the goal of the last tick."),
         Function("the-set-goal", "pose", "The pose of goal-x, goal-y and goal-heading."),
-        _command(NAVIGATE, "Drive towards the channel `goal` among the obstacles.", "drive", "head", reads=("goal",)),
+        command(NAVIGATE, "Drive towards the channel `goal` among the obstacles.", "drive", "head", reads=("goal",)),
     ),
     (_PRESET, *_SWITCHES, _RANGES, *_ARRIVAL, *_CIRCLES, *_NAT, *_DEADLOCK, *_GAZE, *_EVIDENCE, *_GATE, *_PLACE),
     _build_natigation,
@@ -346,11 +294,11 @@ def _search_switch(name: str, doc: str) -> Parameter:
 
 def _search_is_on(values: Values, preset: Parameter, switch: Parameter) -> bool:
     """Whether a switch is on, by itself or by the preset of its library."""
-    modern = _chosen(preset, values, "paper", "modern") == "modern"
-    return {"preset": modern, "on": True, "off": False}[_chosen(switch, values, "preset", "on", "off")]
+    modern = chosen(preset, values, "paper", "modern") == "modern"
+    return {"preset": modern, "on": True, "off": False}[chosen(switch, values, "preset", "on", "off")]
 
 
-_IR = _parameters(
+_IR = parameters(
     IrSettings(),
     ("sweep", "rad", "The head sweeps so far to either side (chosen here)."),
     ("step", "rad", "From fixation to fixation (chosen here)."),
@@ -367,7 +315,7 @@ _IR = _parameters(
 )
 _IR_PRESET = _search_preset("`paper`, or `modern`, which turns `roam` on.")
 _ROAM = _search_switch("roam", "Listen all round in wide steps, turn to what is heard, and sweep only there.")
-_CROSSING = _parameters(
+_CROSSING = parameters(
     CrossingSettings(),
     ("side", "", "Least number of fixations on either side of the plus-to-minus change (chosen here)."),
     ("max_error", "rad", "Greatest standard error of the angle; the paper allows the result 2 degrees (chosen here)."),
@@ -376,9 +324,9 @@ _CROSSING = _parameters(
 
 
 def _share_ir(workshop: Workshop, values: Values) -> IrSearch:
-    crossing = _settings(CrossingSettings(), _CROSSING, values)
+    crossing = settings_of(CrossingSettings(), _CROSSING, values)
     roam = _search_is_on(values, _IR_PRESET, _ROAM)
-    settings = replace(_settings(IrSettings(), _IR, values), crossing=crossing, roam=roam)
+    settings = replace(settings_of(IrSettings(), _IR, values), crossing=crossing, roam=roam)
     return _share(workshop, IrSearch, lambda: IrSearch(settings), settings, "ir-search")
 
 
@@ -406,22 +354,22 @@ IR_SEARCH = Library(
     "ir-search",
     "The direction of the donor's infra-red beacon, by a sweep of the head while standing.",
     (
-        _bool("ir-search-has-been-started", "A sweep is going on."),
-        _bool("the-ir-search-is-finished", "The last sweep came to its end."),
-        _bool("the-returned-angle-is-no-good", "It came to its end without a direction."),
-        _bool("we-know-the-donor-direction", "A direction was found, and nothing has spoken against it since."),
-        _bool("too-few-ir-readings", "The last sweep failed: the beacon was heard too rarely."),
-        _bool("no-plus-to-minus-change", "The last sweep failed: what was heard did not change from plus to minus."),
-        _bool("the-ir-readings-disagree", "The last sweep failed: the beacon rocked too much for a direction."),
-        _bool("the-sun-is-suspected", "The last sweep failed, and its faint signals look like a beacon in the sun."),
-        _command(ir_search.START, "Begin a sweep from scratch.", "drive", "head"),
-        _command(ir_search.CONTINUE, "Go on with the sweep.", "drive", "head"),
+        boolean("ir-search-has-been-started", "A sweep is going on."),
+        boolean("the-ir-search-is-finished", "The last sweep came to its end."),
+        boolean("the-returned-angle-is-no-good", "It came to its end without a direction."),
+        boolean("we-know-the-donor-direction", "A direction was found, and nothing has spoken against it since."),
+        boolean("too-few-ir-readings", "The last sweep failed: the beacon was heard too rarely."),
+        boolean("no-plus-to-minus-change", "The last sweep failed: what was heard did not change from plus to minus."),
+        boolean("the-ir-readings-disagree", "The last sweep failed: the beacon rocked too much for a direction."),
+        boolean("the-sun-is-suspected", "The last sweep failed, and its faint signals look like a beacon in the sun."),
+        command(ir_search.START, "Begin a sweep from scratch.", "drive", "head"),
+        command(ir_search.CONTINUE, "Go on with the sweep.", "drive", "head"),
     ),
     (_IR_PRESET, _ROAM, *_IR, *_CROSSING),
     _build_ir_search,
 )
 
-_GROUND = _parameters(
+_GROUND = parameters(
     GroundSettings(),
     ("start", "m", "Ground distance of the first fixations (paper: six feet)."),
     ("cut_off", "m", "What stands beyond is no good (paper: 23 to 25 feet)."),
@@ -433,7 +381,7 @@ _GROUND = _parameters(
     ("error_square", "", "Standard deviation of a range, share of its square, 1/m (chosen here)."),
     ("error_factor", "", "A discontinuity is more than so many standard deviations (chosen here)."),
 )
-_STEREO = _parameters(
+_STEREO = parameters(
     StereoSettings(),
     ("camera_height", "m", "Until a reading tells it."),
     ("angle_tolerance", "rad", "A fixation counts this near to where it was to look (chosen here)."),
@@ -444,7 +392,7 @@ _STEREO = _parameters(
     ("reach_slack", "m", "With from-horizon: what fits the strength of the beacon may be so far off (chosen here)."),
     ("reach_share", "", "With from-horizon: and by this share of the distance (chosen here)."),
 )
-_UN_STICK = _parameters(
+_UN_STICK = parameters(
     UnStickSettings(),
     ("tilting", "s", "un-stick-the-head: so long the tilt alone is sent home (chosen here)."),
     ("homing", "s", "un-stick-the-head: so long both axes are sent home, before a person is asked (chosen here)."),
@@ -455,9 +403,9 @@ _FROM_HORIZON = _search_switch("from-horizon", "Look from far to near, for what 
 
 
 def _share_stereo(workshop: Workshop, values: Values) -> StereoSearch:
-    ground = _settings(GroundSettings(), _GROUND, values)
+    ground = settings_of(GroundSettings(), _GROUND, values)
     from_horizon = _search_is_on(values, _STEREO_PRESET, _FROM_HORIZON)
-    settings = replace(_settings(StereoSettings(), _STEREO, values), ground=ground, from_horizon=from_horizon)
+    settings = replace(settings_of(StereoSettings(), _STEREO, values), ground=ground, from_horizon=from_horizon)
     if not settings.camera_height > ground.object_height > 0.0:
         raise ValueError("object-height must be more than 0 and less than camera-height")
     ir = workshop.share(IrSearch, lambda: IrSearch(IrSettings()))
@@ -488,7 +436,7 @@ def _build_stereo_search(values: Values, workshop: Workshop) -> Offer:
         competences={
             stereo_search.START: Fixate(search.first_look, search.last_result),
             stereo_search.CONTINUE: Fixate(search.look, search.progress),
-            "un-stick-the-head": UnStick(_settings(UnStickSettings(), _UN_STICK, values)),
+            "un-stick-the-head": UnStick(settings_of(UnStickSettings(), _UN_STICK, values)),
         },
     )
 
@@ -497,16 +445,16 @@ STEREO_SEARCH = Library(
     "stereo-search",
     "The distance of what stands in the donor's direction, by stereo ranging along the ground while standing.",
     (
-        _bool("stereo-ranging-is-started", "A search is going on or has come to its end."),
-        _bool("a-range-value-has-been-returned", "The search has come to its end."),
-        _bool("the-range-value-is-no-good", "It has come to its end without a range within the cut-off."),
+        boolean("stereo-ranging-is-started", "A search is going on or has come to its end."),
+        boolean("a-range-value-has-been-returned", "The search has come to its end."),
+        boolean("the-range-value-is-no-good", "It has come to its end without a range within the cut-off."),
         Function("the-returned-range", "number", "Distance of what was found, 0 where nothing is.", unit="m"),
         Function("the-error-of-the-range", "number", "How far that range may be off, 0 where there is none.", unit="m"),
-        _bool("the-head-is-stuck", "It has not come to rest where it was sent for some time."),
-        _bool("the-head-needs-a-person", "The search has tried in vain to free the head."),
-        _command("un-stick-the-head", "Stand; send the tilt home, then both axes, then ask a person.", "drive", "head"),
-        _command(stereo_search.START, "Begin a search from scratch.", "drive", "head"),
-        _command(stereo_search.CONTINUE, "Go on with the search.", "drive", "head"),
+        boolean("the-head-is-stuck", "It has not come to rest where it was sent for some time."),
+        boolean("the-head-needs-a-person", "The search has tried in vain to free the head."),
+        command("un-stick-the-head", "Stand; send the tilt home, then both axes, then ask a person.", "drive", "head"),
+        command(stereo_search.START, "Begin a search from scratch.", "drive", "head"),
+        command(stereo_search.CONTINUE, "Go on with the search.", "drive", "head"),
     ),
     (_STEREO_PRESET, _FROM_HORIZON, *_GROUND, *_STEREO, *_UN_STICK, _STUCK_AFTER),
     _build_stereo_search,
@@ -514,7 +462,7 @@ STEREO_SEARCH = Library(
 
 # --- find and fetch -------------------------------------------------------------------------------
 
-_DONOR = _parameters(
+_DONOR = parameters(
     DonorSettings(),
     ("docking_distance", "m", "From the robot's middle to the donor's front when docked (chosen here)."),
     (
@@ -536,18 +484,18 @@ _DONOR = _parameters(
     ("donors", "", "With several: how many donors there are."),
     ("trips", "", "With several: how many objects each of them holds."),
 )
-_BEACONS = _parameters(
+_BEACONS = parameters(
     BeaconSettings(),
     ("farthest", "m", "With several: no donor is farther from home (chosen here)."),
 )
-_ROAMING = _parameters(
+_ROAMING = parameters(
     RoamingSettings(),
     ("approach", "m", "A beacon that was heard is listened to again from so near (chosen here)."),
     ("near", "m", "A beacon heard on the way from nearer than this is worth a stop (chosen here)."),
     ("apart", "m", "Places where the robot listens are so far apart (chosen here)."),
     ("stalled", "s", "Getting no nearer to such a place for longer, the robot gives it up (chosen here)."),
 )
-_STATION = _parameters(
+_STATION = parameters(
     StationSettings(),
     ("slack", "m", "keep-station: pushed off by less, the robot stays (chosen here)."),
     ("heading_slack", "rad", "keep-station: turned by less, it stays (chosen here)."),
@@ -562,10 +510,12 @@ _ROUTE = Parameter("route", "symbol", "", "chance", "Listen next by `chance` to 
 
 def _build_find_and_fetch(values: Values, workshop: Workshop) -> Offer:
     several = _search_is_on(values, _FETCH_PRESET, _SEVERAL)
-    settings = replace(_settings(DonorSettings(), _DONOR, values), several=several)
-    hearing = replace(_settings(BeaconSettings(), _BEACONS, values), faint=_search_is_on(values, _FETCH_PRESET, _FAINT))
-    spiral = _chosen(_ROUTE, values, "chance", "spiral") == "spiral"
-    roaming = replace(_settings(RoamingSettings(), _ROAMING, values), spiral=spiral)
+    settings = replace(settings_of(DonorSettings(), _DONOR, values), several=several)
+    hearing = replace(
+        settings_of(BeaconSettings(), _BEACONS, values), faint=_search_is_on(values, _FETCH_PRESET, _FAINT)
+    )
+    spiral = chosen(_ROUTE, values, "chance", "spiral") == "spiral"
+    roaming = replace(settings_of(RoamingSettings(), _ROAMING, values), spiral=spiral)
     ir = workshop.share(IrSearch, lambda: _share_ir(workshop, {}))
     stereo = workshop.share(StereoSearch, lambda: _share_stereo(workshop, {}))
     goal = workshop.share(NavigationGoal, lambda: NavigationGoal(ArrivalSettings()))
@@ -587,7 +537,7 @@ def _build_find_and_fetch(values: Values, workshop: Workshop) -> Offer:
             "remember-the-current-goal-if-any": _current_goal,
             "where-to-listen-next": lambda channels: roam.place,
         },
-        competences={"keep-station": KeepStation(_settings(StationSettings(), _STATION, values))},
+        competences={"keep-station": KeepStation(settings_of(StationSettings(), _STATION, values))},
     )
 
 
@@ -599,8 +549,8 @@ FIND_AND_FETCH = Library(
     "find-and-fetch",
     "Where the donor is and where home is. Use ir-search, stereo-search and natigation before it.",
     (
-        _bool("donor-has-been-located", "Its place is known, and nothing has spoken against it since."),
-        _bool("we-already-have-the-widget", "The donor's object lies on the platform."),
+        boolean("donor-has-been-located", "Its place is known, and nothing has spoken against it since."),
+        boolean("we-already-have-the-widget", "The donor's object lies on the platform."),
         Function(
             "the-robots-home-position",
             "pose",
@@ -610,10 +560,10 @@ FIND_AND_FETCH = Library(
             "set-goal-as-the-donors-location", "pose", "Before the donor, looking at it; no goal while not located."
         ),
         Function("remember-the-current-goal-if-any", "pose", "The goal of the last tick.", reads=("goal",)),
-        _bool("a-donor-is-left", "With several: not everything was fetched from every donor."),
-        _bool("it-is-time-to-listen", "For a search that drives: stop here and listen."),
+        boolean("a-donor-is-left", "With several: not everything was fetched from every donor."),
+        boolean("it-is-time-to-listen", "For a search that drives: stop here and listen."),
         Function("where-to-listen-next", "pose", "For a search that drives: the place; none while a search goes on."),
-        _command("keep-station", "Hold place and heading against being pushed, by odometry.", "drive"),
+        command("keep-station", "Hold place and heading against being pushed, by odometry.", "drive"),
     ),
     (_FETCH_PRESET, _SEVERAL, _FAINT, _ROUTE, _HOME, *_DONOR, *_BEACONS, *_ROAMING, *_STATION),
     _build_find_and_fetch,
@@ -621,7 +571,7 @@ FIND_AND_FETCH = Library(
 
 # --- sensors ----------------------------------------------------------------------------------------
 
-_SENSED = _parameters(
+_SENSED = parameters(
     SensedSettings(),
     ("sector", "rad", "Half the angle of a direction of the lidar."),
     ("far", "m", "The range where the lidar meets nothing, and before its first scan."),
@@ -630,7 +580,7 @@ _SENSED = _parameters(
 
 
 def _build_sensors(values: Values, workshop: Workshop) -> Offer:
-    settings = _settings(SensedSettings(), _SENSED, values)
+    settings = settings_of(SensedSettings(), _SENSED, values)
     sensed = workshop.share(Sensed, lambda: Sensed(settings))
     return Offer(
         percepts={
@@ -652,28 +602,24 @@ def _build_sensors(values: Values, workshop: Workshop) -> Offer:
     )
 
 
-def _number(name: str, unit: str, doc: str) -> Function:
-    return Function(name, "number", doc, unit=unit)
-
-
 SENSORS = Library(
     "sensors",
     "What the sensors say, the last sound value of each: for any robot, and for recordings.",
     (
-        _number("lidar-range-ahead", "m", "Least range ahead."),
-        _number("lidar-range-left", "m", "Least range to the left."),
-        _number("lidar-range-right", "m", "Least range to the right."),
-        _number("lidar-range-behind", "m", "Least range behind."),
-        _number("lidar-nearest-range", "m", "Least range of the whole scan."),
-        _number("lidar-nearest-bearing", "rad", "Where the least range was met, left positive."),
-        _bool("lidar-is-lost", "No sound scan has come for some time."),
-        _number("compass-heading", "rad", "Heading in the world."),
-        _bool("compass-is-lost", "No sound heading has come for some time."),
-        _number("turn-rate", "rad/s", "Of the IMU, or of odometry without one."),
-        _number("pitch", "rad", "Nose up positive."),
-        _number("roll", "rad", "Left side up positive."),
-        _number("motor-current", "A", "The greater of both motors."),
-        _bool("bumped", "A contact switch is pressed."),
+        number("lidar-range-ahead", "m", "Least range ahead."),
+        number("lidar-range-left", "m", "Least range to the left."),
+        number("lidar-range-right", "m", "Least range to the right."),
+        number("lidar-range-behind", "m", "Least range behind."),
+        number("lidar-nearest-range", "m", "Least range of the whole scan."),
+        number("lidar-nearest-bearing", "rad", "Where the least range was met, left positive."),
+        boolean("lidar-is-lost", "No sound scan has come for some time."),
+        number("compass-heading", "rad", "Heading in the world."),
+        boolean("compass-is-lost", "No sound heading has come for some time."),
+        number("turn-rate", "rad/s", "Of the IMU, or of odometry without one."),
+        number("pitch", "rad", "Nose up positive."),
+        number("roll", "rad", "Left side up positive."),
+        number("motor-current", "A", "The greater of both motors."),
+        boolean("bumped", "A contact switch is pressed."),
     ),
     _SENSED,
     _build_sensors,
@@ -682,7 +628,7 @@ SENSORS = Library(
 # --- patrol -----------------------------------------------------------------------------------------
 
 _PATROL = (
-    *_parameters(
+    *parameters(
         PatrolSettings(),
         ("length", "m", "Of the round, ahead of the start."),
         ("width", "m", "Of the round, to the left of the start."),
@@ -715,7 +661,7 @@ PATROL = Library(
     "A round of four places, and a charger to return to.",
     (
         Function("battery-level", "number", "From 0, empty, to 1; 1 on a robot that has none."),
-        _bool("the-battery-is-charged", "A charger fills it now."),
+        boolean("the-battery-is-charged", "A charger fills it now."),
         Function("rounds-made", "number", "Whole rounds."),
         Function("the-next-place", "pose", "Of the round."),
         Function("the-charger", "pose", "Where to stand for charging."),
@@ -748,10 +694,10 @@ DRIVE = Library(
     "drive",
     "Steady motion, whatever the sensors say.",
     (
-        _command("drive-ahead", "Straight ahead.", "drive"),
-        _command("back-up", "Straight back.", "drive"),
-        _command("turn-left", "To the left on the spot.", "drive"),
-        _command("turn-right", "To the right on the spot.", "drive"),
+        command("drive-ahead", "Straight ahead.", "drive"),
+        command("back-up", "Straight back.", "drive"),
+        command("turn-left", "To the left on the spot.", "drive"),
+        command("turn-right", "To the right on the spot.", "drive"),
     ),
     _STEADY,
     _build_drive,

@@ -388,16 +388,32 @@ class Function:
     reads: tuple[str, ...] = ()
 
 
+View = Mapping[str, object]
+"""Something that people may look at, as plain JSON values; `kind` says what it is, `frame` in which frame it lies.
+
+Frames: "robot"; "odom", which lies where the robot started, x ahead; "map", which lies there too, its axes those of the
+world. Kinds, lengths in metres and angles in radians:
+
+- `pose`: `at` [x, y, theta], what is believed; a picture of a run joins those of all ticks to a path;
+- `points`: `at` [[x, y], …]; `lines`: `at` [[x, y, x, y], …]; `heading`: `at`, a direction from the robot;
+- `sectors`: `open`, a text of 0 and 1 of equal sectors, the first from bearing `first` on, counter-clockwise;
+- `grid`: a patch of a map: `cell`, corner `x`, `y`, `columns`, `rows`, `data`: base64 of zlib of one byte a cell, rows
+  upwards, 0 … 100 the probability [%] that it is occupied, 255 unknown.
+"""
+
+
 @dataclass(frozen=True, slots=True)
 class Offer:
     """A library brought to life for one robot: callables by function name.
 
-    percepts are sampled once a tick after the estimators; values are evaluated when a channel is filled.
+    percepts are sampled once a tick after the estimators; values are evaluated when a channel is filled. views: by
+    name, asked once a tick after all competences; None where there is nothing new to see.
     """
 
     percepts: Mapping[str, Callable[[], bool | float]] = field(default_factory=dict)
     values: Mapping[str, Callable[[Channels], object]] = field(default_factory=dict)
     competences: Mapping[str, Competence] = field(default_factory=dict)
+    views: Mapping[str, Callable[[], View | None]] = field(default_factory=dict)
 
 
 Shared = TypeVar("Shared", bound=Estimator)

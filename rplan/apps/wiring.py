@@ -10,7 +10,7 @@ import hashlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from behaviours.interface import STOP, Command, Competence, Library, Pose, Reading, Workshop
+from behaviours.interface import STOP, Command, Competence, Library, Pose, Reading, View, Workshop
 from rplan.apps.libraries import Catalogue, catalogue
 from rplan.backends.python import PythonEngine
 from rplan.driver import Checks, Compiled, compile_plan, no_checks
@@ -103,6 +103,7 @@ def crew(compiled: Compiled, libraries: Catalogue | None = None) -> Crew[Command
     percepts: dict[str, Callable[[], bool | float]] = {}
     values: dict[str, Callable[[Channels], object]] = {}
     competences: dict[str, Competence] = {}
+    views: dict[str, Callable[[], View | None]] = {}
     refused: list[Diagnostic] = []
     for bound in compiled.goals.libraries:
         try:
@@ -113,9 +114,10 @@ def crew(compiled: Compiled, libraries: Catalogue | None = None) -> Crew[Command
         percepts |= offer.percepts
         values |= offer.values
         competences |= offer.competences
+        views |= offer.views
     if refused:
         raise PlanError(refused)
-    return Crew(percepts, values, competences, workshop.estimators, STOP)
+    return Crew(percepts, values, competences, workshop.estimators, STOP, views)
 
 
 class PlanBrain:

@@ -13,7 +13,7 @@ is recorded, and the plan sees `(competence-failed NAME)` in the next tick.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Generic
 
 from rplan.goals.condition import Term
@@ -33,7 +33,10 @@ class Fault:
 
 @dataclass(frozen=True, slots=True)
 class Tick(Generic[C]):
-    """The record of a tick. values: output -> what its channel holds (a command channel: the command)."""
+    """The record of a tick. values: output -> what its channel holds (a command channel: the command).
+
+    shown: by name, what people may look at, where it is new.
+    """
 
     number: int
     percepts: Mapping[str, PerceptValue]
@@ -44,6 +47,7 @@ class Tick(Generic[C]):
     faults: tuple[Fault, ...]
     reports: Mapping[str, Any]
     command: C
+    shown: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,6 +137,7 @@ class Controller(Generic[C]):
             tuple(self._faults),
             self._reports,
             command,
+            {name: seen for name, view in self.crew.views.items() if (seen := view()) is not None},
         )
 
     def close(self) -> C:

@@ -7,7 +7,7 @@ fills a crew from libraries of behaviours.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Generic, Protocol, Self, TypeVar
 
 
@@ -46,10 +46,14 @@ class EstimatorLike(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Crew(Generic[C]):
-    """Callables by function name; estimators in the order of their updates; safe: the command to stand still."""
+    """Callables by function name; estimators in the order of their updates; safe: the command to stand still.
+
+    views: what people may look at, by name; None where there is nothing new.
+    """
 
     percepts: Mapping[str, Callable[[], bool | float]]
     values: Mapping[str, Callable[[Channels], object]]
     competences: Mapping[str, CompetenceLike[C]]
     estimators: tuple[EstimatorLike, ...]
     safe: C
+    views: Mapping[str, Callable[[], Mapping[str, object] | None]] = field(default_factory=dict)

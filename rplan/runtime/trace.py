@@ -81,6 +81,8 @@ class Trace:
                 for name, report in tick.reports.items()
             },
         }
+        if tick.shown:
+            rest["shown"] = dict(tick.shown)
         return f'{_compact(rest)[:-1]},"way":{self._way(decision)[1]}}}'
 
 

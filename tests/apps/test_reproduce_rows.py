@@ -33,7 +33,7 @@ def moment(
 ) -> Moment:
     reading = Reading(time, 0, Odometry(pose, speed, 0.0))
     reports = {} if details is None else {NAVIGATE: Report(details=details)}
-    return Moment(time, pose, speed, action, reading, command, percepts or {}, reports, movers or {})
+    return Moment(time, pose, speed, action, reading, command, percepts or {}, reports, movers or {}, {})
 
 
 def seen(

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from behaviours.interface import Command, Pose, Reading, Report
+from behaviours.interface import Command, Pose, Reading, Report, View
 from rplan.apps.sweep.work import Change
 from rplan.apps.sweep.work import Row as Columns
 from sim.judge import Verdict
@@ -41,7 +41,7 @@ class Case:
 class Moment:
     """One tick. pose, speed [m/s], movers (donor and what else may move, while it is there): the truth.
 
-    action: what the plan sent to the drive, as text; goal: whether the plan had one.
+    action: what the plan sent to the drive, as text; shown: what it gave to look at, where that is new.
     """
 
     time: float
@@ -53,6 +53,7 @@ class Moment:
     percepts: Mapping[str, bool | float]
     reports: Mapping[str, Report]
     movers: Mapping[str, Pose]
+    shown: Mapping[str, View]
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,7 +20,6 @@ from sim.episode import Episode
 from sim.scenarios.scenario import Scenario
 from sim.things.thing import Thing
 
-ACTION = "action"
 FLEEING = "(move-away-from-danger)"
 NAVIGATE = "move-according-to-NaT-plan"
 MOVING = 0.01  # [m/s] above which the robot is in motion
@@ -33,6 +32,12 @@ class Watch:
     brain: PlanBrain
     moments: list[Moment] = field(default_factory=list)
     _movers: tuple[Thing, ...] | None = None
+    _action: str = field(init=False)
+
+    def __post_init__(self) -> None:
+        """The action is what the first channel of commands holds."""
+        outputs = self.brain.compiled.goals.outputs
+        self._action = next((o.name for o in outputs if o.type is not None and o.type.name == "command"), "")
 
     def observe(self, episode: Episode) -> None:
         """See a tick; the standing still after the last one is none."""
@@ -42,7 +47,7 @@ class Watch:
         world = episode.world
         if self._movers is None:
             self._movers = tuple(t for t in world.things if t.placed.moves or t.placed.kind == "donor")
-        sent = tick.decision.sent.get(ACTION)
+        sent = tick.decision.sent.get(self._action)
         self.moments.append(
             Moment(
                 time=episode.time,
@@ -54,6 +59,7 @@ class Watch:
                 percepts=tick.percepts,
                 reports=tick.reports,
                 movers={thing.placed.id: thing.pose for thing in self._movers if thing.present},
+                shown=tick.shown,
             )
         )
 

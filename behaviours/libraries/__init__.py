@@ -1,0 +1,1 @@
+"""Libraries of behaviours, one file each; `behaviours/catalogue.py` names them."""
