@@ -50,6 +50,7 @@ from behaviours.estimators.roaming import Roaming, RoamingSettings
 from behaviours.estimators.sensed import Sensed, SensedSettings
 from behaviours.estimators.stereo_search import StereoSearch, StereoSettings
 from behaviours.interface import Channels, Function, Library, Offer, Parameter, Pose, Values, Workshop
+from behaviours.libraries.recent_path import LIBRARY as RECENT_PATH
 
 NAVIGATE = "move-according-to-NaT-plan"
 
@@ -719,7 +720,18 @@ def _share(workshop: Workshop, kind: type[Shared], make: Callable[[], Shared], s
 LIBRARIES: Mapping[str, Library] = MappingProxyType(
     {
         item.name: item
-        for item in (ROBOT, RUNAWAY, NATIGATION, IR_SEARCH, STEREO_SEARCH, FIND_AND_FETCH, SENSORS, PATROL, DRIVE)
+        for item in (
+            ROBOT,
+            RUNAWAY,
+            NATIGATION,
+            IR_SEARCH,
+            STEREO_SEARCH,
+            FIND_AND_FETCH,
+            SENSORS,
+            PATROL,
+            DRIVE,
+            RECENT_PATH,
+        )
     }
 )
 """Every library, by name."""

@@ -1,0 +1,36 @@
+"""The recent path of the robot, as points that obstacle avoidance may take for obstacles.
+
+Takes: where the robot believes to be: the hybrid pose, for odometry that over-reports turns would turn the remembered
+path with every turn. Gives: `points` in the robot frame of this tick. Leaves alone: who steers clear of them, and when.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from behaviours.cores.recent_path import Trace, TraceSettings
+from behaviours.estimators.localisation import Localisation
+from behaviours.estimators.surroundings import moved
+from behaviours.interface import Channels, Floats, Pose, Reading, Report
+
+MAP = Pose(0.0, 0.0, 0.0)
+
+
+class RecentPath:
+    """points: (n, 2) [m] robot frame, without the near ones; is_back: the robot was here before, and went away."""
+
+    def __init__(self, settings: TraceSettings, place: Localisation) -> None:
+        self.settings = settings
+        self.trace = Trace(settings)
+        self._place = place
+        self.points: Floats = np.zeros((0, 2))
+        self.is_back = False
+
+    def update(self, reading: Reading, reports: Mapping[str, Report], channels: Channels) -> None:
+        pose = self._place.pose
+        here = (pose.x, pose.y)
+        self.trace.add(reading.stamp, here)
+        self.points = moved(self.trace.apart(here), MAP, pose)
+        self.is_back = self.trace.is_back(here)
