@@ -1,0 +1,245 @@
+"""The wall beside the robot, fitted to every scan and followed from one to the next.
+
+Takes: every reading. Gives: `wall`, offset and angle filtered, how the wall curves, where it ends, and what lies ahead;
+what to look at. Leaves alone: steering.
+
+All is computed for a wall to the right; for one to the left the scan is mirrored before, and who steers mirrors the
+turn. After Bayer 2012; `corners` adds pivots about ends and walls that bar the way.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.random import Generator, default_rng
+
+from behaviours.cores import corner
+from behaviours.cores.corner import CornerSettings
+from behaviours.cores.view_path import ViewPath
+from behaviours.cores.wall_fit import Fit, FitSettings, Line, acquire, track
+from behaviours.cores.wall_law import LawSettings, bend
+from behaviours.cores.wall_loss import GAP, End, end_of, invented
+from behaviours.cores.wall_state import FilterSettings, WallState, as_line, begun, predicted, updated
+from behaviours.estimators.surroundings import scan_points
+from behaviours.interface import Channels, Floats, Odometry, Reading, Report, View, wrap
+
+Mode = Literal["none", "wall", "end", "lost"]
+NOTHING = np.zeros((0, 2))
+
+
+@dataclass(frozen=True, slots=True)
+class FittedWallSettings:
+    """left: the wall is to the left. narrow [rad]: the view is restricted while the robot is so well along the wall.
+
+    accept [rad]: a wall that is found may be turned so far; loss: points are invented where the wall ends; curve: the
+    curvature counts; corners: pivots, walls ahead, and looking for the wall again when it is lost.
+    """
+
+    left: bool = False
+    loss: bool = True
+    curve: bool = True
+    per_metre: bool = False
+    corners: bool = False
+    narrow: float = math.radians(30)
+    accept: float = math.radians(135)
+    shown_every: int = 5
+    seed: int = 0
+    fit: FitSettings = field(default_factory=FitSettings)
+    view: ViewPath = field(default_factory=ViewPath)
+    filter: FilterSettings = field(default_factory=FilterSettings)
+    law: LawSettings = field(default_factory=LawSettings)
+    corner: CornerSettings = field(default_factory=CornerSettings)
+
+
+class FittedWall:
+    """mode: "wall" while one is followed, "end" in a pivot, "none" before the first, "lost" after the last.
+
+    state: offset and angle; curvature: K of the law; end: where the wall ends; front [m]: what is ahead in the lane.
+    """
+
+    def __init__(self, settings: FittedWallSettings) -> None:
+        self.settings = settings
+        self._chance: Generator = default_rng(settings.seed)
+        self.mode: Mode = "none"
+        self.state: WallState | None = None
+        self.curvature = 0.0
+        self.end: End | None = None
+        self.front = math.inf
+        self._pivot: corner.Point = (0.0, 0.0)
+        self._points: Floats = NOTHING
+        self._fit: Fit | None = None
+        self._added: Floats = NOTHING
+        self._last: Odometry | None = None
+        self._scans = 0
+        self._new = False
+
+    # --- what others ask ----------------------------------------------------------------------------
+
+    @property
+    def is_found(self) -> bool:
+        """A wall is followed, or its end."""
+        return self.mode in ("wall", "end")
+
+    @property
+    def ends(self) -> bool:
+        """The wall ends within the view."""
+        return self.mode == "end" or (self.end is not None and GAP < self.end.gap < math.inf)
+
+    def target(self) -> tuple[float, float, float] | None:
+        """Offset [m], angle [rad] and curvature to steer by."""
+        law = self.settings.law
+        match self.mode:
+            case "wall":
+                assert self.state is not None
+                return self.state.offset, self.state.angle, self.curvature if self.settings.curve else 0.0
+            case "end":
+                line = corner.tangent(self._pivot)
+                return line.distance, wrap(-line.normal - math.pi / 2), -1.0 / law.stand_off / law.curvature_gain
+            case _:
+                return None
+
+    # --- a tick ---------------------------------------------------------------------------------------
+
+    def update(self, reading: Reading, reports: Mapping[str, Report], channels: Channels) -> None:
+        self._move(reading.odometry)
+        if reading.lidar is None or not reading.lidar.fresh:
+            return
+        points = scan_points(reading.lidar)
+        if self.settings.left:
+            points = points * np.array([1.0, -1.0])
+        self._points, self._added = points, NOTHING
+        self._scans += 1
+        self._new = self._scans % self.settings.shown_every == 0
+        self.front = self._nearest_ahead(points)
+        self._look(points)
+
+    def _move(self, told: Odometry) -> None:
+        last, self._last = self._last, told
+        if last is None:
+            return
+        turn = wrap(told.pose.theta - last.pose.theta)
+        way = math.hypot(told.pose.x - last.pose.x, told.pose.y - last.pose.y)
+        way = -way if told.speed < 0 else way
+        turn = -turn if self.settings.left else turn
+        if self.state is not None:
+            self.state = predicted(self.state, way, turn, 1.0, self.settings.filter)
+        x, y = self._pivot[0] - way * math.cos(turn / 2), self._pivot[1] - way * math.sin(turn / 2)
+        c, s = math.cos(turn), math.sin(turn)
+        self._pivot = (c * x + s * y, c * y - s * x)
+
+    def _nearest_ahead(self, points: Floats) -> float:
+        lane = (points[:, 0] > 0) & (np.abs(points[:, 1]) <= self.settings.corner.lane)
+        return float(points[lane, 0].min()) if lane.any() else math.inf
+
+    def _look(self, points: Floats) -> None:
+        settings = self.settings
+        match self.mode:
+            case "wall":
+                self._follow(points)
+            case "end":
+                behind = corner.beyond(points, self._pivot, settings.fit, settings.corner, self._chance)
+                self._found(behind) if behind is not None else self._show(None)
+            case "none" | "lost":
+                if self.mode == "none" or settings.corners:
+                    self._search(points)
+        if settings.corners and self.mode in ("wall", "end"):
+            barring = corner.ahead(points, settings.fit, settings.corner, settings.law.stand_off, self._chance)
+            if barring is not None and not self._is_followed(barring.line):
+                self._found(barring)
+
+    def _is_followed(self, line: Line) -> bool:
+        """Whether it is the wall that is followed already."""
+        return (
+            self.mode == "wall"
+            and self.state is not None
+            and abs(wrap(line.normal - as_line(self.state).normal)) < 0.35
+        )
+
+    def _search(self, points: Floats) -> None:
+        found = acquire(points, self.settings.fit, self._chance, self.settings.accept)
+        if found is not None:
+            self._found(found)
+        else:
+            self._show(None)
+
+    def _found(self, fit: Fit) -> None:
+        self.mode, self.state, self.curvature, self.end = "wall", begun(fit.line, self.settings.filter), 0.0, None
+        self._show(fit)
+
+    def _follow(self, points: Floats) -> None:
+        settings, state = self.settings, self.state
+        assert state is not None
+        narrow = abs(state.angle) < settings.narrow
+        if narrow:
+            points = points[settings.view.holds(points)]
+        fit = track(points, as_line(state), settings.fit)
+        if fit is None:
+            self._lose()
+            return
+        self.state = updated(state, fit.line, settings.filter)
+        self.end = end_of(fit, points, settings.view) if narrow else None
+        self.curvature = self._curvature(fit, points) if narrow else 0.0
+        self._points = points
+        self._show(fit)
+        end = self.end
+        if settings.corners and end is not None and end.gap > GAP and end.station <= settings.corner.abreast:
+            self.mode, self._pivot = "end", end.point
+
+    def _lose(self) -> None:
+        if self.settings.corners and self.end is not None and self.end.gap > GAP:
+            self.mode, self._pivot = "end", self.end.point
+        else:
+            self.mode, self.state, self.curvature, self.end = "lost", None, 0.0, None
+        self._show(None)
+
+    def _curvature(self, fit: Fit, points: Floats) -> float:
+        assert self.end is not None
+        settings = self.settings
+        cluster = points[fit.inliers]
+        if settings.loss and not settings.corners:
+            self._added = invented(fit, points, self.end, settings.view)
+            cluster = np.concatenate([cluster, self._added])
+        stations = fit.line.stations(cluster)
+        order = np.argsort(stations, kind="stable")
+        heights = -fit.line.off(cluster)
+        return bend(stations[order], heights[order], per_metre=settings.per_metre)
+
+    # --- what to look at --------------------------------------------------------------------------------
+
+    def _show(self, fit: Fit | None) -> None:
+        self._fit = fit
+
+    def line_view(self) -> View | None:
+        """The wall as a line beside the robot."""
+        if not self._new:
+            return None
+        if self.state is None or not self.is_found:
+            return {"kind": "lines", "frame": "robot", "at": []}
+        line = as_line(self.state)
+        (nx, ny), (ux, uy) = line.n, line.along
+        x, y = nx * line.distance, ny * line.distance
+        ends = [x - 1.5 * ux, y - 1.5 * uy, x + 3.0 * ux, y + 3.0 * uy]
+        return {"kind": "lines", "frame": "robot", "at": [self._mirrored(ends)]}
+
+    def inliers_view(self) -> View | None:
+        """The points that lie on it."""
+        if not self._new:
+            return None
+        whole = self._fit is not None and len(self._fit.inliers) == len(self._points)
+        on = self._points[self._fit.inliers] if self._fit is not None and whole else NOTHING
+        return self._points_view(on)
+
+    def added_view(self) -> View | None:
+        """The points that were invented."""
+        return self._points_view(self._added[:1]) if self._new else None
+
+    def _points_view(self, points: Floats) -> View:
+        return {"kind": "points", "frame": "robot", "at": [self._mirrored(point) for point in points.tolist()]}
+
+    def _mirrored(self, values: list[float]) -> list[float]:
+        flip = -1.0 if self.settings.left else 1.0
+        return [round(value * (flip if k % 2 else 1.0), 3) for k, value in enumerate(values)]
