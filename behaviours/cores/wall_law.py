@@ -54,9 +54,9 @@ def bend(stations: Floats, heights: Floats, *, per_metre: bool = False) -> float
     Positive where the wall curves towards the robot. per_metre: divided by the mean half span, a curvature [1/m].
     """
     count = len(stations)
-    middle = count // 2
-    apart = np.arange(max(1, math.ceil(0.3 * count)), middle + 1)
-    apart = apart[middle + apart < count]
+    middle = (count - 1) // 2
+    apart = np.arange(max(1, math.ceil(0.3 * count)), count // 2 + 1)
+    apart = apart[(apart <= middle) & (middle + apart < count)]
     if not apart.size:
         return 0.0
     ahead, behind = stations[middle + apart] - stations[middle], stations[middle] - stations[middle - apart]

@@ -21,7 +21,7 @@ from behaviours.cores import corner
 from behaviours.cores.corner import CornerSettings
 from behaviours.cores.view_path import ViewPath
 from behaviours.cores.wall_fit import Fit, FitSettings, Line, acquire, track
-from behaviours.cores.wall_law import LawSettings, bend
+from behaviours.cores.wall_law import NEAREST, LawSettings, bend
 from behaviours.cores.wall_loss import GAP, End, end_of, invented
 from behaviours.cores.wall_state import FilterSettings, WallState, as_line, begun, predicted, updated
 from behaviours.estimators.surroundings import scan_points
@@ -33,7 +33,7 @@ NOTHING = np.zeros((0, 2))
 
 @dataclass(frozen=True, slots=True)
 class FittedWallSettings:
-    """left: the wall is to the left. narrow [rad]: the view is restricted while the robot is so well along the wall.
+    """left: the wall is to the left. narrow [rad]: the view is restricted once the robot is so well along the wall.
 
     accept [rad]: a wall that is found may be turned so far; loss: points are invented where the wall ends; curve: the
     curvature counts; corners: pivots, walls ahead, and looking for the wall again when it is lost.
@@ -75,7 +75,7 @@ class FittedWall:
         self._added: Floats = NOTHING
         self._last: Odometry | None = None
         self._scans = 0
-        self._new = False
+        self._new = self._narrow = False
 
     # --- what others ask ----------------------------------------------------------------------------
 
@@ -168,12 +168,13 @@ class FittedWall:
 
     def _found(self, fit: Fit) -> None:
         self.mode, self.state, self.curvature, self.end = "wall", begun(fit.line, self.settings.filter), 0.0, None
+        self._narrow = False
         self._show(fit)
 
     def _follow(self, points: Floats) -> None:
         settings, state = self.settings, self.state
         assert state is not None
-        narrow = abs(state.angle) < settings.narrow
+        narrow = self._narrow = self._narrow or abs(state.angle) < settings.narrow
         if narrow:
             points = points[settings.view.holds(points)]
         fit = track(points, as_line(state), settings.fit)
@@ -199,11 +200,13 @@ class FittedWall:
     def _curvature(self, fit: Fit, points: Floats) -> float:
         assert self.end is not None
         settings = self.settings
-        cluster = points[fit.inliers]
         if settings.loss and not settings.corners:
             self._added = invented(fit, points, self.end, settings.view)
-            cluster = np.concatenate([cluster, self._added])
+        cluster = np.concatenate([points[fit.inliers], self._added])
         stations = fit.line.stations(cluster)
+        # what is invented lies ahead of the end, also when the robot is past it and the ray leads back
+        seen = len(cluster) - len(self._added)
+        stations[seen:] = np.maximum(stations[seen:], stations[:seen].max() + NEAREST)
         order = np.argsort(stations, kind="stable")
         heights = -fit.line.off(cluster)
         return bend(stations[order], heights[order], per_metre=settings.per_metre)
