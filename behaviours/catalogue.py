@@ -51,6 +51,7 @@ from behaviours.estimators.sensed import Sensed, SensedSettings
 from behaviours.estimators.stereo_search import StereoSearch, StereoSettings
 from behaviours.interface import Channels, Function, Library, Offer, Parameter, Pose, Values, Workshop
 from behaviours.libraries.recent_path import LIBRARY as RECENT_PATH
+from behaviours.libraries.svfh import LIBRARY as SVFH
 
 NAVIGATE = "move-according-to-NaT-plan"
 
@@ -731,6 +732,7 @@ LIBRARIES: Mapping[str, Library] = MappingProxyType(
             PATROL,
             DRIVE,
             RECENT_PATH,
+            SVFH,
         )
     }
 )
