@@ -50,7 +50,11 @@ from behaviours.estimators.roaming import Roaming, RoamingSettings
 from behaviours.estimators.sensed import Sensed, SensedSettings
 from behaviours.estimators.stereo_search import StereoSearch, StereoSettings
 from behaviours.interface import Channels, Function, Library, Offer, Parameter, Pose, Values, Workshop
+from behaviours.libraries.flippers import LIBRARY as FLIPPERS
+from behaviours.libraries.localisation import LIBRARY as LOCALISATION
+from behaviours.libraries.mapping import LIBRARY as MAPPING
 from behaviours.libraries.recent_path import LIBRARY as RECENT_PATH
+from behaviours.libraries.stasis import LIBRARY as STASIS
 from behaviours.libraries.svfh import LIBRARY as SVFH
 
 NAVIGATE = "move-according-to-NaT-plan"
@@ -731,8 +735,12 @@ LIBRARIES: Mapping[str, Library] = MappingProxyType(
             SENSORS,
             PATROL,
             DRIVE,
+            LOCALISATION,
+            MAPPING,
             RECENT_PATH,
             SVFH,
+            FLIPPERS,
+            STASIS,
         )
     }
 )
