@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 TITLES: Mapping[str, str] = {
     "find-and-fetch": "Find and fetch (Bonasso, Antonisse and Slack 1992)",
+    "wayfarer": "Perimeter reconnaissance (Yamauchi 2005)",
 }
 MARKS = {"met": "met", "close": "**close**", "missed": "**missed**"}
 COLOURS = ("#3478e5", "#b0478f", "#16876f", "#a9720a", "#8457d8", "#8d5a3b", "#5c7f1c", "#0f7fa3")

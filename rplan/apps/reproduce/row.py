@@ -27,7 +27,8 @@ Measures = Columns
 class Case:
     """Episodes of one kind. plan, scenario: below plans/; seeds: one episode each.
 
-    settings: keys of the scenario with other values, as YAML (`things[0].speed`, `1.2`).
+    settings: keys of the scenario with other values, as YAML (`things[0].speed`, `1.2`). changes: of parameters of the
+    plan's libraries.
     """
 
     name: str
@@ -35,6 +36,12 @@ class Case:
     scenario: str
     seeds: tuple[int, ...]
     settings: tuple[tuple[str, str], ...] = ()
+    changes: tuple[Change, ...] = ()
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether plan and scenario are run as their files have them."""
+        return not (self.settings or self.changes)
 
 
 @dataclass(frozen=True, slots=True)
