@@ -53,6 +53,7 @@ from behaviours.interface import Channels, Function, Library, Offer, Parameter, 
 from behaviours.libraries.flippers import LIBRARY as FLIPPERS
 from behaviours.libraries.localisation import LIBRARY as LOCALISATION
 from behaviours.libraries.mapping import LIBRARY as MAPPING
+from behaviours.libraries.perimeter import LIBRARY as PERIMETER
 from behaviours.libraries.recent_path import LIBRARY as RECENT_PATH
 from behaviours.libraries.stasis import LIBRARY as STASIS
 from behaviours.libraries.svfh import LIBRARY as SVFH
@@ -737,6 +738,7 @@ LIBRARIES: Mapping[str, Library] = MappingProxyType(
             DRIVE,
             LOCALISATION,
             MAPPING,
+            PERIMETER,
             RECENT_PATH,
             SVFH,
             FLIPPERS,
