@@ -60,7 +60,10 @@ class SteerClear:
         return shown
 
 
-def sectors_view(open_: NDArray[np.bool_]) -> View:
-    """Direction i is centred on i / n of a turn, so the first begins half a sector to the right of straight ahead."""
+def sectors_view(open_: NDArray[np.bool_], turned: float = 0.0) -> View:
+    """Direction i is centred on i / n of a turn, so the first begins half a sector to its right.
+
+    turned [rad]: the robot frame against the one of the directions.
+    """
     text = "".join("1" if free else "0" for free in open_.tolist())
-    return {"kind": "sectors", "frame": "robot", "first": round(-math.pi / len(open_), 6), "open": text}
+    return {"kind": "sectors", "frame": "robot", "first": round(wrap(-math.pi / len(open_) - turned), 6), "open": text}

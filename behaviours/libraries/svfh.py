@@ -7,11 +7,19 @@ a percept, the heading to a goal, a view. Leaves alone: where to go.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, replace
+from functools import partial
 
+from behaviours.competences.steer_by_vfh_plus import SteerByVfhPlus, SteerSettings
 from behaviours.competences.steer_clear import SteerClear
+from behaviours.cores.hull_paths import Hull, Motors
+from behaviours.cores.pilot import PilotSettings
 from behaviours.cores.svfh import SvfhSettings
-from behaviours.declaring import boolean, chosen, command, number, parameters, settings_of
+from behaviours.cores.vfh_plus import VfhPlusSettings, is_blocked
+from behaviours.cores.way_back import WayBackSettings
+from behaviours.declaring import boolean, chosen, command, number, parameters, positive, settings_of
 from behaviours.estimators.goal_heading import GoalHeading
+from behaviours.estimators.near_points import NearPoints
 from behaviours.estimators.sectors import KEEP_OFF, Sectors
 from behaviours.interface import Function, Library, Offer, Parameter, Pose, Values, Workshop
 from behaviours.libraries.recent_path import recent_path
@@ -31,6 +39,52 @@ _SVFH = parameters(
     ("gain", "", "Turn rate per angle, 1/s (chosen here)."),
     ("max_turn_rate", "rad/s", "Greatest turn rate (chosen here)."),
     ("blocked_turn_rate", "rad/s", "On the spot, when no direction is open (chosen here)."),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class _Outline:
+    """The hull as parameters name it [m]."""
+
+    hull_length: float = 0.69
+    hull_width: float = 0.52
+    hull_radius: float = 0.0
+
+
+_HULL_OF = _Outline()
+_HULL = parameters(
+    _HULL_OF,
+    ("hull_length", "m", "With `modern`: of the rectangle round the robot's middle (PackBot)."),
+    ("hull_width", "m", "With `modern`: of that rectangle."),
+    ("hull_radius", "m", "With `modern`: of a round hull, which counts in place of the rectangle where it is not 0."),
+)
+_PLUS = parameters(
+    VfhPlusSettings(),
+    ("low", "", "With `modern`: a direction becomes open below this density (chosen here)."),
+    ("high", "", "With `modern`: a direction becomes blocked above this density (chosen here)."),
+    ("wide", "rad", "With `modern`: a wider opening is taken near its sides, half of this from them (chosen here)."),
+    ("to_target", "", "With `modern`: cost of an angle from the wanted direction."),
+    ("to_heading", "", "With `modern`: cost of an angle from the robot's heading."),
+    ("to_previous", "", "With `modern`: cost of an angle from what was chosen before."),
+)
+_PILOT = parameters(
+    PilotSettings(),
+    ("margin", "m", "With `modern`: kept between the hull and what was seen (chosen here)."),
+    ("roomy", "m", "With `modern`: full speed with so much room before and beside the hull (chosen here)."),
+    ("tight", "", "With `modern`: share of the speed with no room at all (chosen here)."),
+    ("slip", "", "With `modern`: turn of the tracks per turn of the hull."),
+)
+_MOTORS = parameters(
+    Motors(),
+    ("acceleration", "m/s^2", "With `modern`: how fast the robot brakes."),
+    ("turn_acceleration", "rad/s^2", "With `modern`: how fast it changes its turn rate."),
+    ("hold", "s", "With `modern`: so long a command may last until the next one has its effect (chosen here)."),
+)
+_WAY_BACK = parameters(
+    WayBackSettings(),
+    ("stalled", "s", "With `modern`: not getting away for so long, the robot goes back the way it came (chosen here)."),
+    ("back", "m", "With `modern`: so far at first (chosen here)."),
+    ("remembered", "s", "With `modern`: so long it keeps off that place (chosen here)."),
 )
 _PRESET = Parameter("preset", "symbol", "", "paper", "`paper` or `modern`.")
 _RANGES = Parameter("ranges", "symbol", "", "lidar", "From a `lidar`, or from `sonar` rings.")
@@ -58,23 +112,56 @@ def svfh_settings(values: Values) -> SvfhSettings:
     return settings
 
 
+def _modern(values: Values, settings: SvfhSettings, left: bool) -> SteerSettings:
+    """The settings of VFH+ with the values of a plan."""
+    choice = settings_of(VfhPlusSettings(), _PLUS, values)
+    choice = replace(choice, directions=settings.directions, clearance=settings.clearance, window=settings.window)
+    hull, motors = settings_of(_HULL_OF, _HULL, values), settings_of(Motors(), _MOTORS, values)
+    pilot = settings_of(PilotSettings(), _PILOT, values)
+    for name, value in (("hull-length", hull.hull_length), ("hull-width", hull.hull_width), ("slip", pilot.slip)):
+        positive(name, value)
+    positive("acceleration", motors.acceleration)
+    positive("turn-acceleration", motors.turn_acceleration)
+    outline = Hull(hull.hull_length, hull.hull_width, hull.hull_radius)
+    pilot = replace(
+        pilot,
+        cruise=settings.cruise,
+        gain=settings.gain,
+        max_turn_rate=settings.max_turn_rate,
+        hull=outline,
+        motors=motors,
+    )
+    return SteerSettings(choice, pilot, settings_of(WayBackSettings(), _WAY_BACK, values), left)
+
+
 def _build(values: Values, workshop: Workshop) -> Offer:
-    chosen(_PRESET, values, "paper", "modern")
+    modern = chosen(_PRESET, values, "paper", "modern") == "modern"
     settings = svfh_settings(values)
     left = chosen(_WHEN_BLOCKED, values, "left", "right") == "left"
     place = localisation(workshop)
     around = surroundings(workshop, sonar=chosen(_RANGES, values, "lidar", "sonar") == "sonar")
     path = recent_path(workshop)
-    sectors = workshop.share(Sectors, lambda: Sectors(settings, around, lambda: path.points))
     goal = _goal(values)
     target = workshop.share(GoalHeading, lambda: GoalHeading(place))
-    steer = SteerClear(sectors, around, place, left)
+    steer: SteerClear | SteerByVfhPlus
+    if modern:
+        plus = _modern(values, settings, left)
+        near = workshop.share(NearPoints, lambda: NearPoints(around, place))
+        steer = SteerByVfhPlus(plus, near, place, lambda: around.known, lambda: path.points)
+        blocked = partial(_is_blocked, near, plus)
+    else:
+        sectors = workshop.share(Sectors, lambda: Sectors(settings, around, lambda: path.points))
+        steer, blocked = SteerClear(sectors, around, place, left), partial(getattr, sectors, "is_blocked")
     return Offer(
-        percepts={"the-way-is-blocked": lambda: sectors.is_blocked, "the-distance-to-the-goal": target.distance},
+        percepts={"the-way-is-blocked": blocked, "the-distance-to-the-goal": target.distance},
         values={"the-place-to-go": lambda channels: goal, "the-heading-to-the-goal": target.heading},
         competences={STEER: steer},
         views={"sectors": steer.view},
     )
+
+
+def _is_blocked(near: NearPoints, settings: SteerSettings) -> bool:
+    return is_blocked(near.points, settings.choice)
 
 
 LIBRARY = Library(
@@ -92,6 +179,6 @@ LIBRARY = Library(
             reads=("heading", KEEP_OFF),
         ),
     ),
-    (_PRESET, _RANGES, _WHEN_BLOCKED, *_SVFH, *_GOAL),
+    (_PRESET, _RANGES, _WHEN_BLOCKED, *_SVFH, *_PLUS, *_HULL, *_PILOT, *_MOTORS, *_WAY_BACK, *_GOAL),
     _build,
 )
