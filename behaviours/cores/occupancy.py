@@ -27,8 +27,8 @@ UNKNOWN = 255
 TILE = 64
 """Cells by which the grid grows, to each side that needs it."""
 
-MOST = 400.0
-"""A cell farther than this [m] from the origin along x or y is not kept: the memory is bounded."""
+MOST = 2048
+"""A cell so many cells from the origin along x or y is not kept, 410 m with cells of 0.2 m: the memory is bounded."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,7 +154,7 @@ def _beams(scan: Scan, p_MR: Pose, reach: float) -> tuple[tuple[float, float], S
 
 def _within(eye: tuple[float, float], far: float, cell: float) -> Region | None:
     """The cells that beams of this length may touch; None where they lie outside of what is kept."""
-    if max(abs(eye[0]), abs(eye[1])) + far > MOST:
+    if not (max(abs(eye[0]), abs(eye[1])) + far) / cell < MOST - TILE:
         return None
     column, row = (math.floor((value - far) / cell) - 1 for value in eye)
     side = math.ceil(2 * far / cell) + 3

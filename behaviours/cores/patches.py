@@ -18,13 +18,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from behaviours.cores.occupancy import UNKNOWN, Bytes, OccupancyGrid, Plane, Region
+from behaviours.cores.occupancy import MOST, UNKNOWN, Bytes, OccupancyGrid, Plane, Region
 
 SAME = 254
 """In a patch: the cell is as it was."""
-
-MOST_CELLS = 4096 * 4096
-"""A patch of more cells is none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +46,7 @@ def packed(cell: float, region: Region, cells: Bytes) -> Patch:
 def unpacked(patch: Patch) -> Bytes:
     """(rows, columns). Raises ValueError where the data are damaged or of another size; no bomb is unpacked."""
     rows, columns = patch.region.rows, patch.region.columns
-    if not (rows > 0 and columns > 0 and rows * columns <= MOST_CELLS):
+    if not (0 < rows <= 2 * MOST and 0 < columns <= 2 * MOST):
         raise ValueError(f"a patch of {columns} times {rows} cells")
     stream = zlib.decompressobj()
     try:
@@ -96,6 +93,8 @@ class PatchReader:
         """Take the next patch. Raises ValueError where it is damaged, or its cells are of another size."""
         if self.cell and patch.cell != self.cell:
             raise ValueError(f"cells of {patch.cell:g} m after cells of {self.cell:g} m")
+        if not _is_kept(patch.region):
+            raise ValueError("a patch outside of all maps")
         new = unpacked(patch)
         cells = self.plane.at(patch.region)
         np.copyto(cells, new, where=new != SAME)
@@ -106,6 +105,11 @@ def around(x: float, y: float, side: float, cell: float) -> Region:
     """The cells of the square with this side [m] round (x, y)."""
     count = math.ceil(side / cell)
     return Region(math.floor((x - side / 2) / cell), math.floor((y - side / 2) / cell), count, count)
+
+
+def _is_kept(region: Region) -> bool:
+    ends = region.column, region.row, region.column + region.columns, region.row + region.rows
+    return all(abs(end) <= MOST for end in ends)
 
 
 def _box(changed: NDArray[np.bool_]) -> tuple[slice, slice] | None:
