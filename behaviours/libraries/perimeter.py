@@ -5,6 +5,7 @@ Takes: what a plan sets. Gives: the library. Leaves alone: which one steers (`sv
 
 from __future__ import annotations
 
+from behaviours.cores.contour import ContourSettings
 from behaviours.cores.hough import HoughSettings
 from behaviours.cores.orientation import FollowSettings
 from behaviours.declaring import boolean, chosen, number, parameters, positive, settings_of
@@ -12,6 +13,9 @@ from behaviours.estimators.walls import RoundSettings, Walls, WallsSettings
 from behaviours.interface import Function, Library, Offer, Parameter, Values, View, Workshop
 from behaviours.libraries.sharing import localisation, surroundings
 
+_PRESET = Parameter(
+    "preset", "symbol", "", "paper", "`paper`: along the strongest line; `modern`: a disc rolls along what stands there."
+)
 _SIDE = Parameter("side", "symbol", "", "left", "The wall is kept to the `left` or to the `right`.")
 _FOLLOW = parameters(
     FollowSettings(),
@@ -51,6 +55,7 @@ def walls_settings(values: Values) -> WallsSettings:
         HoughSettings(hough.least_votes, hough.peaks, refine, positive("band", hough.band)),
         settings_of(RoundSettings(), _ROUND, values),
         chosen(_SIDE, values, "left", "right") == "right",
+        ContourSettings() if chosen(_PRESET, values, "paper", "modern") == "modern" else None,
     )
 
 
@@ -86,6 +91,6 @@ LIBRARY = Library(
         number("the-wall-distance", "m", "To the wall that is followed; the stand-off where it is not seen."),
         boolean("we-have-come-round", "The robot is, or has been, back where following began."),
     ),
-    (_SIDE, *_FOLLOW, *_HOUGH, _REFINE, *_ROUND),
+    (_PRESET, _SIDE, *_FOLLOW, *_HOUGH, _REFINE, *_ROUND),
     _build,
 )
