@@ -5,8 +5,9 @@ and random motions. Leaves alone: how motion is judged (odometry, or `stood_stil
 
 Source: Yamauchi 2005, "Wayfarer", section 4.3, which prints the ranges of the random motions and their two seconds. The
 rates, the threshold and the cap are chosen here: a level that cannot rise above the threshold ends an escape in its
-first moving tick, and the robot is back where it was stuck. `modern`: the way in is driven backwards first, motion
-that repeats itself is stasis too (`repeats`), and the robot does not try for ever.
+first moving tick, and the robot is back where it was stuck. `modern`: the way in is driven backwards first, an escape from
+a place that was not left for good lasts longer, motion that repeats itself is stasis too (`repeats`), and the robot
+does not try for ever.
 """
 
 from __future__ import annotations
@@ -250,14 +251,15 @@ class Patience:
         """An operator is needed."""
         return self.episodes > self._settings.episodes
 
-    def take(self, stuck: bool, pose: Pose) -> None:
-        """Whether the robot is stuck, and where it is."""
+    def take(self, stuck: bool, pose: Pose) -> bool:
+        """Whether the robot is stuck, and where it is; gives whether that is the first of an episode."""
         if (
             self._place is not None
             and math.hypot(pose.x - self._place.x, pose.y - self._place.y) > self._settings.place
         ):
             self._place, self.episodes = None, 0
-        if stuck and not self._was_stuck:
+        begun, self._was_stuck = stuck and not self._was_stuck, stuck
+        if begun:
             self._place = self._place or pose
             self.episodes += 1
-        self._was_stuck = stuck
+        return begun

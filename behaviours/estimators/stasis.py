@@ -35,7 +35,10 @@ SCANS = 3
 
 @dataclass(frozen=True, slots=True)
 class StasisSettings:
-    """seed: of chance; directed: the way in is driven backwards first; slipping [m]: see `stood_still`."""
+    """seed: of chance; slipping [m]: see `stood_still`; lifting [s]: see `_is_being_lifted`.
+
+    modern: the way in is driven backwards first, motion is judged by scans, cycles and vain escapes are noticed.
+    """
 
     level: LevelSettings = field(default_factory=LevelSettings)
     escape: EscapeSettings = field(default_factory=EscapeSettings)
@@ -43,6 +46,7 @@ class StasisSettings:
     patience: PatienceSettings = field(default_factory=PatienceSettings)
     modern: bool = False
     slipping: float = 0.05
+    lifting: float = 3.0
     seed: int = 1
 
 
@@ -60,6 +64,7 @@ class Stasis:
         self._stamp: float | None = None
         self._scans: list[tuple[Floats, Pose]] = []
         self._slips = False
+        self._flippers_out: float | None = None
 
     @property
     def is_stuck(self) -> bool:
@@ -81,10 +86,12 @@ class Stasis:
             moves = moves and not self._slips
             if moves and not self.level.stuck:
                 self._free.add(made)
-        self.level.take(told, moves, dt)
+        self.level.take(STILL if self._is_being_lifted(channels, reading.stamp) else told, moves, dt)
         if self.settings.modern:
             self._watch_for_cycles(reading.stamp)
-        self.patience.take(self.level.stuck, self._place.pose)
+        begun = self.patience.take(self.level.stuck, self._place.pose)
+        if self.settings.modern and begun and self.patience.episodes > 1:
+            self.level.fill()
 
     def way_back(self) -> tuple[Drive, ...]:
         """Motions, one a tick, that undo the last free ones; none but at the first try at a place, with `modern`."""
@@ -96,16 +103,27 @@ class Stasis:
         """A random motion."""
         return draw(self.settings.escape, self._chance)
 
+    def _is_being_lifted(self, channels: Channels, stamp: float) -> bool:
+        """Whether the flippers were sent out only just: until they have lifted the hull, being held is no stasis."""
+        if not any(isinstance(value, Command) and _sends_out(value) for value in channels.values()):
+            self._flippers_out = None
+            return False
+        self._flippers_out = stamp if self._flippers_out is None else self._flippers_out
+        return stamp - self._flippers_out < self.settings.lifting
+
     def _watch_for_cycles(self, stamp: float) -> None:
         if self._cycle.take(stamp, self._place.pose):
             self._cycle.clear()
             self.level.fill()
 
     def _look(self) -> None:
-        """Compare the scan with an earlier one, as it is and as odometry would have it by now."""
+        """Compare the scan with an earlier one, as it is and as odometry would have it by now.
+
+        By odometry alone, for the compass is noisier than what the robot turns between two scans.
+        """
         if self._around is None or not self._around.fresh:
             return
-        points, pose = self._around.points, self._place.pose
+        points, pose = self._around.points, self._place.odometry
         self._scans = [*self._scans[-SCANS:], (points, pose)]
         before, then = self._scans[0]
         if len(self._scans) <= SCANS:
@@ -121,6 +139,10 @@ def commanded(channels: Channels) -> Drive:
         if isinstance(value, Command) and value.drive is not None:
             told = value.drive
     return told or STILL
+
+
+def _sends_out(told: Command) -> bool:
+    return told.flippers is not None and told.flippers.deployed
 
 
 def _made(odometry: Odometry) -> Drive:

@@ -13,8 +13,6 @@ from behaviours.estimators.stasis import Stasis, StasisSettings
 from behaviours.interface import Library, Offer, Parameter, Values, Workshop
 from behaviours.libraries.sharing import localisation, surroundings
 
-MODERN_LEVEL = LevelSettings(release=0.0)
-
 _LEVEL = parameters(
     LevelSettings(),
     ("up", "", "How the level rises, 1/s, while the robot is told to move and does not (chosen here)."),
@@ -45,10 +43,13 @@ _CYCLE = parameters(
     ("likeness", "", "Autocorrelation of poses from which a motion repeats itself (chosen here)."),
 )
 _RELEASE = Parameter(
-    "release", "number", "", 1.0, "An escape ends below this level; with `modern` at 0 unless another is given."
+    "release", "number", "", 1.0, "An escape ends below this level; with `modern` always at 0 (chosen here)."
 )
 _SLIPPING = Parameter(
     "slipping", "number", "m", 0.05, "So much better a scan must fit standing than moving; `modern` alone."
+)
+_LIFTING = parameters(
+    StasisSettings(), ("lifting", "s", "For so long after flippers are sent out being held is no stasis (chosen here).")
 )
 _SEED = Parameter("seed", "number", "", 1.0, "Of the random motions.")
 _PRESET = Parameter(
@@ -61,16 +62,14 @@ _RANGES = Parameter(
 
 
 def _settings(values: Values, modern: bool) -> StasisSettings:
-    level = settings_of(LevelSettings(), _LEVEL, values)
-    default = MODERN_LEVEL.release if modern and "release" not in values else level.release
-    level = settings_of(level, (_RELEASE,), {"release": values.get("release", default)})
     return StasisSettings(
-        level,
+        settings_of(LevelSettings(), (*_LEVEL, _RELEASE), {**values, "release": 0.0} if modern else values),
         settings_of(EscapeSettings(), _ESCAPE, values),
         settings_of(CycleSettings(), _CYCLE, values),
         settings_of(PatienceSettings(), _PATIENCE, values),
         modern,
         settings_of(StasisSettings(), (_SLIPPING,), values).slipping,
+        settings_of(StasisSettings(), _LIFTING, values).lifting,
         settings_of(StasisSettings(), (_SEED,), values).seed,
     )
 
@@ -101,6 +100,6 @@ LIBRARY = Library(
         boolean("an-operator-is-needed", "Escapes at one place have been in vain too often (`modern`)."),
         command("escape-from-stasis", "Random motions, and with `modern` the way in backwards first.", "drive"),
     ),
-    (_PRESET, _RANGES, *_LEVEL, _RELEASE, *_ESCAPE, *_PATIENCE, *_CYCLE, _SLIPPING, _SEED),
+    (_PRESET, _RANGES, *_LEVEL, _RELEASE, *_ESCAPE, *_PATIENCE, *_CYCLE, _SLIPPING, *_LIFTING, _SEED),
     _build,
 )
