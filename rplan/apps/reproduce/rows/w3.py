@@ -15,9 +15,9 @@ ALLEYS = 24
 FEWEST, ENOUGH = 1, 20
 FORGOTTEN = (Change("recent-path", "ignored", 1000.0),)
 """All of the path is nearer than that, so none of it is an obstacle."""
-INSIDE = 0.3  # [m] behind the line of the wall
-PAST = 6.2  # [m] along the wall: 3 m behind the widest mouth
-BACK = -3.0  # [m]: as far before the mouth
+INSIDE = 0.3  # [m] behind the mouth, which is at x = 0
+PAST = -6.2  # [m], y: along the wall that goes on to the right, 3 m past the widest mouth
+BACK = -6.0  # [m], x: where the robot started
 LEAST, MOST, RARELY = 0.2, 0.5, 0.05
 ALL_OUT = "at the mouth the robot seldom takes the wall that it came along for the one to follow"
 HELD = "at the mouth the robot turns into the alley again and again"
@@ -34,9 +34,7 @@ def cases(seeds: int) -> tuple[Case, ...]:
 
 def entries(moments: Sequence[Moment]) -> list[float]:
     """When [s] the robot came into the alley."""
-    return [
-        now.time for last, now in pairwise(moments) if last.pose.y <= INSIDE < now.pose.y and 0 <= now.pose.x <= 3.2
-    ]
+    return [now.time for last, now in pairwise(moments) if last.pose.x <= INSIDE < now.pose.x]
 
 
 def left(moments: Sequence[Moment]) -> tuple[str, float] | None:
@@ -47,7 +45,7 @@ def left(moments: Sequence[Moment]) -> tuple[str, float] | None:
     """
     entered = next(iter(entries(moments)), 0.0)
     for moment in moments:
-        if moment.pose.x >= PAST:
+        if moment.pose.y <= PAST:
             return "on", moment.time
         if moment.time > entered > 0 and moment.pose.x <= BACK:
             return "back", moment.time
@@ -99,8 +97,8 @@ ROW = Row(
     paper="wayfarer",
     title="Blind alleys",
     set_up=(
-        "Twenty-four alleys in the followed wall, the mouth 2.4 to 3.2 m wide, 3.5 to 9 m deep; two minutes each; "
-        "trapped: neither 3 m past the mouth nor 3 m back before it."
+        "The followed wall goes on into a blind alley: twenty-four of them, the mouth 2.4 to 3.2 m wide, 3.5 to 9 m "
+        "deep; two minutes each; trapped: neither 3 m past the mouth nor 6 m back before it."
     ),
     printed=(
         "“Prior to the addition of this behavior, the robot would get trapped in cul-de-sacs in roughly one-third of "
