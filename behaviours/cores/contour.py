@@ -4,9 +4,8 @@ Takes: points, and the place where the disc touched last. Gives: the direction i
 then. Leaves alone: what the points belong to. All of it is for a contour to the left.
 
 Chosen here. Gaps that the disc does not fit through are passed by; at the end of a wall it rolls round the corner, before
-a wall ahead it turns away in time, and what it touched last tells which contour is followed. The rolling disc looks a
-step ahead and so cuts corners that point towards it; there the tangent at the nearest point counts, which is the
-law of Yamauchi 2005 with that point for the wall.
+a wall ahead it turns away in time, and what it touched last tells which contour is followed. Nearer to it or farther
+from it than the stand-off, the law of Yamauchi 2005 leads back, with the nearest point for the wall.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ class ContourSettings:
     made smaller by this share until one fits, at the smallest `least`.
     """
 
-    step: float = 1.0
+    step: float = 2.5
     gain: float = 0.8
     steepest: float = math.pi / 4
     foresight: float = 0.25
@@ -98,9 +97,8 @@ def _tangent(distance: float, bearing: float, stand_off: float, s: ContourSettin
 
 def _radius(reach: Floats, contact: Vec2, stand_off: float, s: ContourSettings) -> float:
     """Of the disc: the stand-off, or as much as leads there no steeper than `steepest`."""
-    slack = s.step * math.sin(s.steepest)
-    nearest = float(reach.min())
-    return max(min(stand_off, nearest + slack), min(nearest, math.hypot(*contact)) - slack)
+    nearest = min(float(reach.min()), math.hypot(*contact))
+    return max(stand_off, nearest - s.step * math.sin(s.steepest))
 
 
 def _roll(
@@ -117,13 +115,14 @@ def _roll(
 
 
 def _swept(reach: Floats, bearing: Floats, start: float, radius: float, step: float) -> tuple[float, int | None]:
-    """How far clockwise [rad] from `start` the first direction lies in which, a step ahead, the disc is free.
+    """How far clockwise [rad] from `start` the first direction lies in which the disc is free for a step.
 
-    From a full turn up there is none.
+    From a full turn up there is none. A point that is within the disc already must not come nearer.
     """
     near = np.flatnonzero(reach < radius + step)
-    r = np.maximum(reach[near], 1e-6)
-    half = np.arccos(np.clip((step * step + r * r - radius * radius) / (2.0 * step * r), -1.0, 1.0))
+    r = np.maximum(reach[near], radius)
+    beyond = np.arccos(np.clip((step * step + r * r - radius * radius) / (2.0 * step * r), -1.0, 1.0))
+    half = np.where(r * r - radius * radius <= step * step, np.arcsin(radius / r), beyond)
     middle = (start - bearing[near]) % math.tau
     begins = np.concatenate([middle - half, middle - math.tau - half])
     ends = np.concatenate([middle + half, middle - math.tau + half])
