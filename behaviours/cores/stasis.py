@@ -5,9 +5,9 @@ and random motions. Leaves alone: how motion is judged (odometry, or `stood_stil
 
 Source: Yamauchi 2005, "Wayfarer", section 4.3, which prints the ranges of the random motions and their two seconds. The
 rates, the threshold and the cap are chosen here: a level that cannot rise above the threshold ends an escape in its
-first moving tick, and the robot is back where it was stuck. `modern`: the way in is driven backwards first, an escape from
-a place that was not left for good lasts longer, motion that repeats itself is stasis too (`repeats`), and the robot
-does not try for ever.
+first moving tick, and the robot is back where it was stuck. `modern`: the way in is driven backwards first, an escape
+from a place that was not left for good lasts longer, motion that repeats itself is stasis too (`repeats`), and the
+robot does not try for ever.
 """
 
 from __future__ import annotations
