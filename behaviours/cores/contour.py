@@ -21,15 +21,16 @@ from behaviours.interface import Floats, Vec2, wrap
 
 @dataclass(frozen=True, slots=True)
 class ContourSettings:
-    """step, foresight, snap, leap [m]; gain [rad/m]; steepest [rad].
+    """look_ahead, foresight, snap, leap, least [m]; regain [rad/m]; steepest [rad].
 
-    step: how far the disc is rolled; foresight: the tangent is that of a place so far ahead; snap: points so near to a
-    line lie on it; leap: the place of contact may move by so much from scan to scan; shrink: a disc that fits nowhere is
-    made smaller by this share until one fits, at the smallest `least`.
+    look_ahead: how far the disc is swept; foresight: the tangent is that of a place so far ahead; regain, steepest: how
+    the stand-off is regained; snap: points so near to a line lie on it; leap: the place of contact may move by so much
+    from scan to scan; shrink: a disc that fits nowhere is made smaller by this share until one fits, at the smallest
+    `least`.
     """
 
-    step: float = 2.5
-    gain: float = 0.8
+    look_ahead: float = 2.5
+    regain: float = 0.8
     steepest: float = math.pi / 4
     foresight: float = 0.25
     snap: float = 0.07
@@ -92,13 +93,13 @@ def rolled(points: Floats, contact: Vec2, stand_off: float, settings: ContourSet
 
 
 def _tangent(distance: float, bearing: float, stand_off: float, s: ContourSettings) -> float:
-    return bearing - math.pi / 2 + max(-s.steepest, min(s.steepest, s.gain * (distance - stand_off)))
+    return bearing - math.pi / 2 + max(-s.steepest, min(s.steepest, s.regain * (distance - stand_off)))
 
 
 def _radius(reach: Floats, contact: Vec2, stand_off: float, s: ContourSettings) -> float:
     """Of the disc: the stand-off, or as much as leads there no steeper than `steepest`."""
     nearest = min(float(reach.min()), math.hypot(*contact))
-    return max(stand_off, nearest - s.step * math.sin(s.steepest))
+    return max(stand_off, nearest - s.look_ahead * math.sin(s.steepest))
 
 
 def _roll(
@@ -106,7 +107,7 @@ def _roll(
 ) -> tuple[float, int | None]:
     """Direction in which the disc gets past the contour, and the point that it touches; smaller where it fits nowhere."""
     while True:
-        swept, touched = _swept(reach, bearing, start, radius, s.step)
+        swept, touched = _swept(reach, bearing, start, radius, s.look_ahead)
         if swept < math.tau:
             return start - swept, touched
         if radius <= s.least:

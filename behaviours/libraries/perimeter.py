@@ -5,6 +5,8 @@ Takes: what a plan sets. Gives: the library. Leaves alone: which one steers (`sv
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from behaviours.cores.contour import ContourSettings
 from behaviours.cores.hough import HoughSettings
 from behaviours.cores.orientation import FollowSettings
@@ -31,6 +33,14 @@ _HOUGH = parameters(
     ("peaks", "", "The most lines of a scan (chosen here)."),
     ("band", "m", "A line is fitted to the points so near to it (chosen here)."),
 )
+_CONTOUR = parameters(
+    ContourSettings(),
+    ("look_ahead", "m", "With `modern`: the disc is swept so far; with the stand-off, the window of `svfh`."),
+    ("regain", "", "With `modern`: how steeply a metre off the stand-off is corrected, rad/m (chosen here)."),
+    ("foresight", "m", "With `modern`: the tangent is that of a place so far ahead (chosen here)."),
+    ("snap", "m", "With `modern`: points so near to a line lie on it (chosen here)."),
+    ("leap", "m", "With `modern`: the place of contact moves by no more from scan to scan (chosen here)."),
+)
 _REFINE = Parameter(
     "refine", "symbol", "", "on", "`on`: lines are fitted to their points; `off`: they are middles of bins."
 )
@@ -39,6 +49,12 @@ _ROUND = parameters(
     ("round_within", "m", "The robot has come round so near to where it began (chosen here)."),
     ("round_after", "m", "And not before it has driven so far (chosen here)."),
 )
+
+
+def _contour(values: Values, follow: FollowSettings) -> ContourSettings:
+    contour = settings_of(ContourSettings(), _CONTOUR, values)
+    positive("look-ahead", contour.look_ahead)
+    return replace(contour, steepest=follow.steepest, least=min(contour.least, follow.stand_off))
 
 
 def walls_settings(values: Values) -> WallsSettings:
@@ -55,7 +71,7 @@ def walls_settings(values: Values) -> WallsSettings:
         HoughSettings(hough.least_votes, hough.peaks, refine, positive("band", hough.band)),
         settings_of(RoundSettings(), _ROUND, values),
         chosen(_SIDE, values, "left", "right") == "right",
-        ContourSettings() if chosen(_PRESET, values, "paper", "modern") == "modern" else None,
+        _contour(values, follow) if chosen(_PRESET, values, "paper", "modern") == "modern" else None,
     )
 
 
@@ -91,6 +107,6 @@ LIBRARY = Library(
         number("the-wall-distance", "m", "To the wall that is followed; the stand-off where it is not seen."),
         boolean("we-have-come-round", "The robot is, or has been, back where following began."),
     ),
-    (_PRESET, _SIDE, *_FOLLOW, *_HOUGH, _REFINE, *_ROUND),
+    (_PRESET, _SIDE, *_FOLLOW, *_HOUGH, _REFINE, *_CONTOUR, *_ROUND),
     _build,
 )
