@@ -7,8 +7,9 @@ from collections.abc import Sequence
 
 from behaviours.interface import wrap
 from rplan.apps.reproduce.figures import case_of, judged_share, numbers, of_case, seed_of, share, spread, typical
-from rplan.apps.reproduce.row import Case, Finding, Measures, Moment, Plot, Preset, Row, Seen
+from rplan.apps.reproduce.row import Case, Drawn, Finding, Measures, Moment, Plot, Preset, Row, Seen
 from rplan.apps.reproduce.rows.w1 import ASKED, BELIEVED, CLUTTERED, PLAN, WORLDS, beliefs, errors
+from rplan.apps.sweep.work import Change
 
 ODOMETRY = "odometry-pose"
 LEAST = 90.0  # [deg]
@@ -87,6 +88,10 @@ ROW = Row(
     cases=cases,
     measure=measure,
     judge=judge,
+    maps=(
+        Drawn("the map by odometry alone", (Change("mapping", "by", "odometry"),)),
+        Drawn("the map by the hybrid estimate"),
+    ),
     plots=(
         Plot("heading_error_deg", "error of the heading by odometry [°]", 1.0, (90.0, 180.0)),
         Plot("position_error", "place by odometry off by [m]"),
