@@ -56,9 +56,9 @@ class HeadingModel:
 
     compass_noise: float = math.radians(1.0)
     iron: float = math.radians(2.0)
-    iron_length: float = 6.0
+    iron_length: float = 20.0
     gyro_noise: float = 0.002
-    gyro_drift: float = 0.001
+    gyro_drift: float = 0.0005
     slip: float = 0.3
     gate: float = 4.0
 

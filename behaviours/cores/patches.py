@@ -10,7 +10,6 @@ changes outside of the region round the robot is sent when the robot comes near.
 from __future__ import annotations
 
 import base64
-import binascii
 import math
 import zlib
 from dataclasses import dataclass
@@ -51,7 +50,7 @@ def unpacked(patch: Patch) -> Bytes:
     stream = zlib.decompressobj()
     try:
         cells = stream.decompress(base64.b64decode(patch.data, validate=True), rows * columns)
-    except (zlib.error, binascii.Error, UnicodeEncodeError) as fault:
+    except (zlib.error, ValueError) as fault:
         raise ValueError(f"damaged data ({fault})") from fault
     if len(cells) != rows * columns:
         raise ValueError(f"{len(cells)} cells instead of {rows * columns}")
