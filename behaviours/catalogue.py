@@ -50,7 +50,13 @@ from behaviours.estimators.roaming import Roaming, RoamingSettings
 from behaviours.estimators.sensed import Sensed, SensedSettings
 from behaviours.estimators.stereo_search import StereoSearch, StereoSettings
 from behaviours.interface import Channels, Function, Library, Offer, Parameter, Pose, Values, Workshop
+from behaviours.libraries.flippers import LIBRARY as FLIPPERS
+from behaviours.libraries.localisation import LIBRARY as LOCALISATION
+from behaviours.libraries.mapping import LIBRARY as MAPPING
+from behaviours.libraries.perimeter import LIBRARY as PERIMETER
 from behaviours.libraries.recent_path import LIBRARY as RECENT_PATH
+from behaviours.libraries.stasis import LIBRARY as STASIS
+from behaviours.libraries.svfh import LIBRARY as SVFH
 from behaviours.libraries.wall_by_ransac import LIBRARY as WALL_BY_RANSAC
 
 NAVIGATE = "move-according-to-NaT-plan"
@@ -731,7 +737,13 @@ LIBRARIES: Mapping[str, Library] = MappingProxyType(
             SENSORS,
             PATROL,
             DRIVE,
+            LOCALISATION,
+            MAPPING,
+            PERIMETER,
             RECENT_PATH,
+            SVFH,
+            FLIPPERS,
+            STASIS,
             WALL_BY_RANSAC,
         )
     }

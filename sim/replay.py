@@ -168,8 +168,21 @@ class Packing:
         if isinstance(plan, Mapping):
             for name in PLAN_RUNS:
                 self._run(name, index, plan.get(name))
+            for name, view in _part(plan, "shown").items():
+                self._view(name, index, view)
             for name, value in (more or {}).items():
                 self._run(name, index, value)
+
+    def _view(self, name: str, index: int, view: object) -> None:
+        """What a plan shows: of a pose, the numbers as a track, the rest as a run."""
+        if not isinstance(view, Mapping):
+            return
+        if view.get("kind") == "pose":
+            self.tracks.setdefault(f"shown {name}", Track(MILLI)).add(index, view.get("at"))
+            view = {key: part for key, part in view.items() if key != "at"}
+        elif view.get("kind") == "grid":
+            view = _whole(view)
+        self._run(f"shown {name}", index, view)
 
     def _run(self, name: str, index: int, value: object) -> None:
         self.runs.setdefault(name, Run()).add(index, value)
@@ -211,6 +224,13 @@ class Packing:
             "tracks": {name: track.packed() for name, track in self.tracks.items()},
             "runs": {name: run.packed() for name, run in self.runs.items()},
         }
+
+
+def _whole(grid: Json) -> Json:
+    """A patch whose lengths are whole micrometres, which no rounding changes."""
+    lengths = [grid.get(name) for name in ("x", "y", "cell")]
+    micro = [round(value * 1e6) if isinstance(value, int | float) else 0 for value in lengths]
+    return {**{key: part for key, part in grid.items() if key not in ("x", "y", "cell")}, "micro": micro}
 
 
 def _ring(waist: Ranges, skirt: Ranges | None) -> Json:

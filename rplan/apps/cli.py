@@ -21,6 +21,7 @@ COMMANDS = {
     "import": "Make a scenario of a world of another format.",
     "inspect": "Show how a plan decides: table, goals, circuit, percepts.",
     "list": "List plans, libraries and what they offer.",
+    "map": "Make a map file or a picture of the map in a recording.",
     "mutate": "Say whether the tests of a plan notice a slip in it.",
     "prove": "Prove what a plan promises, or show how it breaks it.",
     "repair": "Make a whole file of a recording that was cut short.",

@@ -37,8 +37,10 @@ from sim.scenarios.scenario import (
     KeepClear,
     Put,
     RobotSpec,
+    Round,
     Scatter,
     Scenario,
+    Spot,
     ThingSpec,
     Vanish,
 )
@@ -169,6 +171,15 @@ def _between(between: Between) -> Between:
 
 between = record(_between, between=Key(row(Between, "two angles [from, to]", angle, angle)))
 amount_of_angle: Spec[Amount] = mapping_or(between, angle)
+metres_between = record(_between, between=Key(row(Between, "two lengths [from, to]", coordinate, coordinate)))
+drawn_coordinate: Spec[Amount] = mapping_or(metres_between, coordinate)
+
+
+def _spot(x: Amount, y: Amount) -> Spot:
+    return x, y
+
+
+spot = row(_spot, "a place [x, y]", drawn_coordinate, drawn_coordinate)
 waypoint = row(Waypoint, "a waypoint [x, y] or [x, y, seconds to wait]", coordinate, coordinate, moment, optional=1)
 track = listed(waypoint, 2, "a list of waypoints")
 corners = listed(point, 3, "a list of corners [x, y]")
@@ -266,7 +277,7 @@ def _strip(kind: str, start: Vec2, end: Vec2, width: float, height: float, id: s
     return ThingSpec(kind, box(math.dist(start, end), width), height, middle, heading, id=id)
 
 
-def _parked_car(at: Vec2, heading: Amount, size: Vec2, present: float, id: str) -> ThingSpec:
+def _parked_car(at: Spot, heading: Amount, size: Vec2, present: float, id: str) -> ThingSpec:
     return ThingSpec("parked-car", box(*size), CAR_HEIGHT, at, heading, present=present, id=id)
 
 
@@ -284,7 +295,7 @@ def _car(track: tuple[Waypoint, ...], speed: float, starts: Trigger, size: Vec2,
 
 
 def _person(
-    at: Vec2 | None, track: tuple[Waypoint, ...] | None, speed: float, starts: Trigger, then: str, id: str
+    at: Spot | None, track: tuple[Waypoint, ...] | None, speed: float, starts: Trigger, then: str, id: str
 ) -> ThingSpec:
     if track is not None and at is None:
         _distinct(track)
@@ -295,26 +306,26 @@ def _person(
     return ThingSpec("person", Circle(0.25), 1.75, at, id=id)
 
 
-def _trashcan(at: Vec2, radius: float, roll: Roll | None, id: str) -> ThingSpec:
+def _trashcan(at: Spot, radius: float, roll: Roll | None, id: str) -> ThingSpec:
     return ThingSpec("trashcan", Circle(radius), 0.9, at, mass=8.0, motion=roll, id=id)
 
 
-def _post(at: Vec2, radius: float, height: float, id: str) -> ThingSpec:
+def _post(at: Spot, radius: float, height: float, id: str) -> ThingSpec:
     return ThingSpec("post", Circle(radius), height, at, id=id)
 
 
-def _cart(at: Vec2, heading: Amount, size: Vec2, height: float, mass: float, roll: Roll | None, id: str) -> ThingSpec:
+def _cart(at: Spot, heading: Amount, size: Vec2, height: float, mass: float, roll: Roll | None, id: str) -> ThingSpec:
     return ThingSpec("cart", box(*size), height, at, heading, mass, roll, id=id)
 
 
-def _charger(at: Vec2, radius: float, reach: float, id: str) -> ThingSpec:
+def _charger(at: Spot, radius: float, reach: float, id: str) -> ThingSpec:
     return ThingSpec("charger", Circle(radius), 0.6, at, id=id, charges=reach)
 
 
 def _plain(
     kind: str,
     outline: Outline,
-    at: Vec2 | None,
+    at: Spot | None,
     heading: Amount,
     height: float,
     mass: float,
@@ -350,7 +361,7 @@ def _outline(rings: tuple[Ring, ...], height: float, id: str) -> ThingSpec:
 
 
 place_of_thing = {
-    "at": Key(point, None),
+    "at": Key(spot, None),
     "height": Key(positive, 1.0),
     "mass": Key(quantity("number", least=0, most=1e6), 0.0, doc="kg; 0: it cannot be pushed"),
     "keyframes": Key(keyframes, None),
@@ -364,7 +375,7 @@ THINGS: dict[str, Spec[ThingSpec]] = {
     "wall": record(_wall, **ends, thickness=Key(positive, 0.2), height=Key(positive, 2.0), id=identity),
     "curb": record(_curb, **ends, width=Key(positive, 0.15), height=Key(positive, 0.15), id=identity),
     "parked-car": record(
-        _parked_car, at=Key(point), heading=heading, size=Key(size, CAR_SIZE), present=Key(share, 1.0), id=identity
+        _parked_car, at=Key(spot), heading=heading, size=Key(size, CAR_SIZE), present=Key(share, 1.0), id=identity
     ),
     "car": record(
         _car,
@@ -377,18 +388,18 @@ THINGS: dict[str, Spec[ThingSpec]] = {
     ),
     "person": record(
         _person,
-        at=Key(point, None),
+        at=Key(spot, None),
         track=Key(track, None),
         speed=Key(speed, 0.8),
         starts=Key(trigger, At(0.0)),
         then=Key(then, "loop"),
         id=identity,
     ),
-    "trashcan": record(_trashcan, at=Key(point), radius=Key(positive, 0.3), roll=Key(roll, None), id=identity),
-    "post": record(_post, at=Key(point), radius=Key(positive, 0.15), height=Key(positive, 1.0), id=identity),
+    "trashcan": record(_trashcan, at=Key(spot), radius=Key(positive, 0.3), roll=Key(roll, None), id=identity),
+    "post": record(_post, at=Key(spot), radius=Key(positive, 0.15), height=Key(positive, 1.0), id=identity),
     "cart": record(
         _cart,
-        at=Key(point),
+        at=Key(spot),
         heading=heading,
         size=Key(size, (0.9, 0.5)),
         height=Key(positive, 1.0),
@@ -396,7 +407,7 @@ THINGS: dict[str, Spec[ThingSpec]] = {
         roll=Key(roll, None),
         id=identity,
     ),
-    "charger": record(_charger, at=Key(point), radius=Key(positive, 0.15), reach=Key(positive, 0.5), id=identity),
+    "charger": record(_charger, at=Key(spot), radius=Key(positive, 0.15), reach=Key(positive, 0.5), id=identity),
     "disc": record(_disc, radius=Key(positive), **place_of_thing),
     "box": record(_box, size=Key(size), heading=heading, **place_of_thing),
     "polygon": record(_polygon, vertices=Key(corners), heading=heading, **place_of_thing),
@@ -537,7 +548,7 @@ LIMITS = ("max_speed", "max_turn_rate", "acceleration", "turn_acceleration")
 
 
 def _robot(
-    start: Vec2,
+    start: Spot,
     heading: Amount,
     model: str | None,
     shape: Outline | None,
@@ -589,7 +600,7 @@ def _changed(sensors: tuple[Installed, ...], kind: str, changes: dict[str, Any])
 
 robot = record(
     _robot,
-    start=Key(point, doc="home is there"),
+    start=Key(spot, doc="home is there"),
     heading=heading,
     model=Key(choice(*MODELS), None),
     shape=Key(shape, None),
@@ -631,6 +642,9 @@ def _home(unload: float) -> float:
 
 home = record(_home, unload=Key(duration, doc="of standing at home until an object is taken off"))
 goal = record(Goal, at=Key(point), within=Key(positive, 1.0), no_contact=Key(flag, False))
+around = record(
+    Round, about=Key(point), turns=Key(whole(1, 1000), 1), within=Key(positive, 3.0), no_contact=Key(flag, False)
+)
 place = scalar_or(choice("robot", "donor"), point)
 strip = record(KeepClear, **{"from": Key(place, goes_to="start")}, to=Key(place, goes_to="end"), by=Key(length))
 scatter = record(
@@ -719,6 +733,8 @@ def _scenario(
     donors = donors if donor is None else (donor,)
     if donors and rest["goal"] is not None:
         raise ValueError("a scenario has either a donor or a goal")
+    if rest["round"] is not None and (donors or rest["goal"] is not None):
+        raise ValueError("a scenario with 'round' has neither a donor nor a goal")
     return Scenario(ground=Ground(ground), donors=donors, unload=home, **rest)
 
 
@@ -767,6 +783,7 @@ keys_of_scenario: Spec[Scenario] = record(
     donors=Key(listed(donor, 1), (), doc="several; their ids differ"),
     home=Key(home, None),
     goal=Key(goal, None, doc="the task: reach this place"),
+    round=Key(around, None, doc="the task: go round this place and come back"),
     things=Key(Spec(_things, thing_list.schema), ()),
     scatter=Key(listed(scatter), ()),
     weather=Key(weather, Weather()),

@@ -29,6 +29,7 @@ from sim.scenarios.scenario import (
     Put,
     Scatter,
     Scenario,
+    Spot,
     ThingSpec,
     Vanish,
 )
@@ -51,23 +52,23 @@ class Layout:
 
 def lay_out(scenario: Scenario, chance: Generator) -> Layout:
     """Draw what the scenario leaves open. Raises ScenarioError where scattered things find no room."""
-    start = Pose(*scenario.robot.start, wrap(_drawn(scenario.robot.heading, chance)))
+    start = Pose(*_spot(scenario.robot.start, chance), wrap(_drawn(scenario.robot.heading, chance)))
     things = [_donor(spec) for spec in scenario.donors]
     for spec in scenario.things:
-        there, heading = chance.random() < spec.present, _drawn(spec.heading, chance)
+        there, heading, at = chance.random() < spec.present, _drawn(spec.heading, chance), _spot(spec.at, chance)
         if there:
-            things.append(_placed(spec, spec.at, heading))
+            things.append(_placed(spec, at, heading))
     for scatter in scenario.scatter:
-        things += _scattered(scatter, scenario, things, chance)
+        things += _scattered(scatter, scenario, start, things, chance)
     things = _named(things)
-    _check_start(scenario, things)
+    _check_start(scenario, start, things)
     changing = {event.what.thing for event in scenario.events if isinstance(event.what, Vanish | Put)}
     return Layout(start, tuple(replace(thing, changes=thing.id in changing) for thing in things))
 
 
-def _check_start(scenario: Scenario, things: list[Placed]) -> None:
+def _check_start(scenario: Scenario, start: Pose, things: list[Placed]) -> None:
     for thing in things:
-        if distance(scenario.robot.start, thing.outline, thing.pose) < _inner(scenario.robot.build.hull):
+        if distance((start.x, start.y), thing.outline, thing.pose) < _inner(scenario.robot.build.hull):
             raise ScenarioError(
                 [Problem(scenario.name, 1, 1, "robot.start", f"the robot stands in {thing.id!r} there")]
             )
@@ -90,6 +91,10 @@ def _drawn(amount: Amount, chance: Generator) -> float:
             return float(chance.uniform(low, high))
         case _:
             return amount
+
+
+def _spot(spot: Spot, chance: Generator) -> Vec2:
+    return _drawn(spot[0], chance), _drawn(spot[1], chance)
 
 
 def _donor(spec: DonorSpec) -> Placed:
@@ -123,9 +128,11 @@ def _named(things: list[Placed]) -> list[Placed]:
     return named
 
 
-def _scattered(scatter: Scatter, scenario: Scenario, before: list[Placed], chance: Generator) -> list[Placed]:
-    strips = [*_strips(scatter.keep_clear, scenario), *_lanes(before)]
-    robot = Placed("robot", "robot", Circle(scenario.robot.build.radius), Pose(*scenario.robot.start), 1.0)
+def _scattered(
+    scatter: Scatter, scenario: Scenario, start: Pose, before: list[Placed], chance: Generator
+) -> list[Placed]:
+    strips = [*_strips(scatter.keep_clear, scenario, start), *_lanes(before)]
+    robot = Placed("robot", "robot", Circle(scenario.robot.build.radius), Pose(start.x, start.y), 1.0)
     wanted = int(chance.integers(scatter.count[0], scatter.count[1] + 1))
     work = _Work(MOST_WORK)
     for _ in range(ATTEMPTS):
@@ -172,16 +179,16 @@ def _one(scatter: Scatter, strips: list[Strip], others: list[Placed], chance: Ge
     return None
 
 
-def _strips(keep_clear: tuple[KeepClear, ...], scenario: Scenario) -> Iterator[Strip]:
+def _strips(keep_clear: tuple[KeepClear, ...], scenario: Scenario, start: Pose) -> Iterator[Strip]:
     for strip in keep_clear:
-        yield _point(strip.start, scenario), _point(strip.end, scenario), strip.by
+        yield _point(strip.start, scenario, start), _point(strip.end, scenario, start), strip.by
 
 
-def _point(place: Place, scenario: Scenario) -> Vec2:
+def _point(place: Place, scenario: Scenario, start: Pose) -> Vec2:
     if not isinstance(place, str):
         return place
     if place == "robot":
-        return scenario.robot.start
+        return start.x, start.y
     if scenario.donor is None:
         raise ScenarioError([Problem(scenario.name, 1, 1, "scatter", "keeps clear of a donor, and there is none")])
     return scenario.donor.at

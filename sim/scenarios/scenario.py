@@ -33,13 +33,15 @@ class Between:
 
 
 Amount = float | Between
+Spot = tuple[Amount, Amount]
+"""A place [m] either number of which the seed may draw."""
 
 
 @dataclass(frozen=True, slots=True)
 class RobotSpec:
     """start [m]; heading [rad, world]; sensors: names differ; battery: None for one that never ends."""
 
-    start: Vec2
+    start: Spot
     heading: Amount = 0.0
     build: Build = field(default_factory=Build)
     sensors: tuple[Installed, ...] = ()
@@ -70,6 +72,19 @@ class Goal:
 
 
 @dataclass(frozen=True, slots=True)
+class Round:
+    """Going round a place [m] so many times, either way, and back within so much [m] of the start.
+
+    no_contact: the first touch fails the run; curbs are there to be climbed and do not count.
+    """
+
+    about: Vec2
+    turns: int = 1
+    within: float = 3.0
+    no_contact: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class ThingSpec:
     """A thing; present: the chance that it is there; id: empty for its kind and a number.
 
@@ -79,7 +94,7 @@ class ThingSpec:
     kind: str
     outline: Outline
     height: float
-    at: Vec2
+    at: Spot
     heading: Amount = 0.0
     mass: float = 0.0
     motion: Motion | None = None
@@ -153,7 +168,7 @@ class Event:
 
 @dataclass(frozen=True, slots=True)
 class Scenario:
-    """A world to do a task in: fetch from the donors, or reach the goal; with neither the run lasts until its limit.
+    """A world to do a task in: fetch from the donors, reach the goal, or go round; with none it lasts until its limit.
 
     bounds [m]: xmin, ymin, xmax, ymax of what is shown; time_limit [s]. source: where it was imported from; left_out:
     what the import could not keep, in words. unload [s] of standing at home until an object is taken off; None: a
@@ -165,6 +180,7 @@ class Scenario:
     robot: RobotSpec
     donors: tuple[DonorSpec, ...] = ()
     goal: Goal | None = None
+    round: Round | None = None
     things: tuple[ThingSpec, ...] = ()
     scatter: tuple[Scatter, ...] = ()
     weather: Weather = field(default_factory=Weather)

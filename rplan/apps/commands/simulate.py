@@ -181,6 +181,8 @@ def phases(run: Run) -> list[tuple[str, float | None]]:
             return [whole]
         case "reach":
             return [("to the goal", times.arrival), whole]
+        case "round":
+            return [("round", times.arrival), whole]
     marks = [0.0, times.departure, times.arrival, times.loaded, times.home]
     names = ["search, until departure", "to the donor (one way)", "hand-over", "return"]
     spans: list[tuple[str, float | None]] = []
@@ -211,6 +213,8 @@ def _achieved(run: Run) -> str:
             return "the object was fetched and brought home"
         case "reach":
             return f"the goal was reached in {_time(run.verdict.duration)}"
+        case "round":
+            return f"round and back in {_time(run.verdict.duration)}"
         case "none":
             return "the time is over; the scenario sets no task"
 

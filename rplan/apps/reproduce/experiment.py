@@ -86,15 +86,15 @@ def scenario_at(scenario: str, plan: Path) -> Path:
 
 def variant_of(one: Asked, case: Case, world: World, compiled: Compiled) -> Variant:
     """A case with its scenario as its settings make it, and named after it. Raises GridError, ScenarioError."""
-    name = f"{one.row.name}, {case.name}" if case.settings else world.scenario.name
-    text = with_value(world.text, ("name",), json.dumps(name)) if case.settings else world.text
+    name = world.scenario.name if case.is_plain else f"{one.row.name}, {case.name}"
+    text = world.text if case.is_plain else with_value(world.text, ("name",), json.dumps(name))
     for key, value in case.settings:
         text = with_value(text, path(key), value)
     file = f"{Path(case.scenario).name}.yaml"
     loads(text, file)
     shown = (("row", one.row.name), (PRESET, one.preset), ("case", case.name))
-    changes = presets(compiled, one.preset, catalogue()) + (one.row.modern if one.preset == "modern" else ())
-    return Variant(name, file, text, changes, shown)
+    modern = one.row.modern if one.preset == "modern" else ()
+    return Variant(name, file, text, (*presets(compiled, one.preset, catalogue()), *modern, *case.changes), shown)
 
 
 def presets(compiled: Compiled, preset: Preset, libraries: Catalogue) -> tuple[Change, ...]:

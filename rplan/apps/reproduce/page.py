@@ -18,13 +18,14 @@ from typing import TYPE_CHECKING
 from rplan.apps.reproduce.figures import case_of, numbers, spread
 from rplan.apps.reproduce.report import Result, preset_of, see
 from rplan.apps.reproduce.row import Case, Finding, Measures, Plot
-from rplan.apps.reproduce.showing import Shown, picture
+from rplan.apps.reproduce.showing import Shown, draw_maps, picture
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 TITLES: Mapping[str, str] = {
     "find-and-fetch": "Find and fetch (Bonasso, Antonisse and Slack 1992)",
+    "wayfarer": "Perimeter reconnaissance (Yamauchi 2005)",
 }
 MARKS = {"met": "met", "close": "**close**", "missed": "**missed**"}
 COLOURS = ("#3478e5", "#b0478f", "#16876f", "#a9720a", "#8457d8", "#8d5a3b", "#5c7f1c", "#0f7fa3")
@@ -187,11 +188,19 @@ def _draw(result: Result, folder: Path) -> Iterator[tuple[Path, str]]:
         path = folder / f"{_key(result)}.png"
         picture(Shown(result.asked, case), finding.seed, path)
         yield path, f"{result.asked.row.name}, {case.name}, seed {finding.seed}: one run from above"
+        yield from _maps(Shown(result.asked, case), finding.seed, folder / f"{_key(result)}-maps.png")
     plots = [plot for plot in result.asked.row.plots if numbers(result.measures, plot.key)]
     if plots:
         path = folder / f"{_key(result)}-spread.png"
         draw_plots(result, plots, path)
         yield path, f"{result.asked.row.name}: share of the episodes below each value; green: the paper's figure"
+
+
+def _maps(shown: Shown, seed: int, path: Path) -> Iterator[tuple[Path, str]]:
+    if shown.asked.row.maps:
+        draw_maps(shown, seed, path)
+        words = "; ".join(one.words for one in shown.asked.row.maps)
+        yield path, f"{shown.asked.row.name}, {shown.case.name}, seed {seed}: {words}"
 
 
 def _shown(result: Result) -> tuple[Case, Finding] | None:

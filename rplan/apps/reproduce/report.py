@@ -48,7 +48,7 @@ def see(result: Result, finding: Finding) -> str:
     name, case = result.asked.row.name, next((c for c in result.cases if c.name == finding.case), None)
     if case is None or finding.seed is None:
         return "rplan ways --paper plans/figure_1/text.rplan" if not result.cases else ""
-    if result.asked.preset == "paper" and not case.settings:
+    if result.asked.preset == "paper" and case.is_plain:
         world = case.scenario.removeprefix(f"{case.plan}/")
         return f"rplan simulate plans/{case.plan} --scenario {world} --seed {finding.seed} --replay x.html"
     preset = "" if result.asked.preset == "paper" else f" --preset {result.asked.preset}"

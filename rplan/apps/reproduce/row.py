@@ -27,7 +27,8 @@ Measures = Columns
 class Case:
     """Episodes of one kind. plan, scenario: below plans/; seeds: one episode each.
 
-    settings: keys of the scenario with other values, as YAML (`things[0].speed`, `1.2`).
+    settings: keys of the scenario with other values, as YAML (`things[0].speed`, `1.2`). changes: of parameters of the
+    plan's libraries.
     """
 
     name: str
@@ -35,6 +36,12 @@ class Case:
     scenario: str
     seeds: tuple[int, ...]
     settings: tuple[tuple[str, str], ...] = ()
+    changes: tuple[Change, ...] = ()
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether plan and scenario are run as their files have them."""
+        return not (self.settings or self.changes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +83,14 @@ class Plot:
 
 
 @dataclass(frozen=True, slots=True)
+class Drawn:
+    """A map that the robot draws of the run that a page shows. words: what it is; changes: of the plan's libraries."""
+
+    words: str
+    changes: tuple[Change, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Finding:
     """One figure of the paper and ours. because: why it is not met, empty where it is; case, seed: one run to see."""
 
@@ -96,6 +111,7 @@ class Row:
     cases: for a number of seeds; none where nothing is driven. measure: of one episode. judge: of all
     episodes of one preset that ran. plots: of measures, over all cases. note: what agreement is worth.
     modern: what else the preset modern changes in the plan. picture: the case that pages draw, "": the first figure's.
+    maps: those that pages show side by side of the run they draw; the plan uses the library `mapping`.
     """
 
     name: str
@@ -111,3 +127,4 @@ class Row:
     note: str = ""
     modern: tuple[Change, ...] = ()
     picture: str = ""
+    maps: tuple[Drawn, ...] = ()

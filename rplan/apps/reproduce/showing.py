@@ -1,7 +1,7 @@
 """One episode of an experiment, recorded, to be looked at.
 
-Takes: a row with a preset, the name of a case, a seed. Gives: a page that plays the episode, or a picture of it. Leaves
-alone: measuring.
+Takes: a row with a preset, the name of a case, a seed. Gives: a page that plays the episode, a picture of it, or the
+maps that were drawn on it. Leaves alone: measuring.
 """
 
 from __future__ import annotations
@@ -9,9 +9,12 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from PIL import Image
+
+from rplan.apps.drawing import map as maps
 from rplan.apps.files import InputError
 from rplan.apps.reproduce.experiment import Asked, plan_at, scenario_at, variant_of
 from rplan.apps.reproduce.row import Case
@@ -22,6 +25,9 @@ from rplan.apps.wiring import compile_file
 from rplan.lang.suggest import close
 from sim.recording import Recording, read
 from sim.scenarios.format import loads
+
+GAP = 12
+"""Pixels between maps side by side."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,3 +90,31 @@ def picture(shown: Shown, seed: int, file: Path) -> None:
 
     with recorded(shown, seed) as (run, recording):
         draw(recording, file, f"{shown.asked.row.name}, {shown.case.name}: {in_words(run)}")
+
+
+def draw_maps(shown: Shown, seed: int, file: Path) -> None:
+    """Draw the maps that the row has of this episode, side by side, each from a run of its own."""
+    with tempfile.TemporaryDirectory() as folder:
+        drawn = [Path(folder) / f"{k}.png" for k in range(len(shown.asked.row.maps))]
+        for wanted, path in zip(shown.asked.row.maps, drawn, strict=True):
+            case = replace(shown.case, changes=(*shown.case.changes, *wanted.changes))
+            with recorded(Shown(shown.asked, case), seed) as (_, recording):
+                maps.draw(maps.gather(recording), path)
+        _side_by_side([_opened(path) for path in drawn]).save(file, format="png")
+
+
+def _opened(path: Path) -> Image.Image:
+    with Image.open(path) as image:
+        return image.convert("RGB")
+
+
+def _side_by_side(images: list[Image.Image]) -> Image.Image:
+    """All of the height of the lowest."""
+    height = min(image.height for image in images)
+    images = [image.resize((max(1, round(image.width * height / image.height)), height)) for image in images]
+    whole = Image.new("RGB", (sum(image.width for image in images) + GAP * (len(images) - 1), height), "white")
+    left = 0
+    for image in images:
+        whole.paste(image, (left, 0))
+        left += image.width + GAP
+    return whole

@@ -1,0 +1,138 @@
+"""Driving towards the wanted heading by VFH+, with commands that leave the hull free.
+
+Takes: the channels `heading` (map frame) and `keep-off-recent-path`, what stands round the robot, where it is. Gives:
+drive, and what it chose. Leaves alone: where the heading comes from.
+
+Where it does not go on, it goes back along the way that it came and keeps off that place for a while.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from behaviours.competences.steer_clear import sectors_view, wanted_heading
+from behaviours.cores.pilot import PilotSettings, Surrounds, may_turn, safe, towards
+from behaviours.cores.vfh_plus import Choice, VfhPlus, VfhPlusSettings
+from behaviours.cores.way_back import WayBack, WayBackSettings
+from behaviours.estimators.localisation import Localisation
+from behaviours.estimators.near_points import NearPoints
+from behaviours.estimators.sectors import KEEP_OFF
+from behaviours.estimators.surroundings import moved
+from behaviours.interface import STOP, Channels, Command, Drive, Floats, Pose, Reading, Report, View, wrap
+
+MAP = Pose(0.0, 0.0, 0.0)
+BACKWARDS = (0.5, 0.25, 0.12)
+"""Shares of cruise at which the way back is tried."""
+
+
+@dataclass(frozen=True, slots=True)
+class SteerSettings:
+    """left: where to turn when nothing is open, and which of two equally good directions is taken."""
+
+    choice: VfhPlusSettings = field(default_factory=VfhPlusSettings)
+    pilot: PilotSettings = field(default_factory=PilotSettings)
+    way_back: WayBackSettings = field(default_factory=WayBackSettings)
+    left: bool = True
+
+
+class SteerByVfhPlus:
+    """trail: the points (n, 2) [m, robot frame] of the recent path that are far enough away to be kept off."""
+
+    def __init__(
+        self,
+        settings: SteerSettings,
+        near: NearPoints,
+        place: Localisation,
+        known: Callable[[], bool],
+        trail: Callable[[], Floats],
+    ) -> None:
+        self.settings = settings
+        self._near, self._place, self._known, self._trail = near, place, known, trail
+        self._begin()
+
+    def _begin(self) -> None:
+        self._vfh = VfhPlus(self.settings.choice, self.settings.left)
+        self._way = WayBack(self.settings.way_back)
+        self._turning = -math.inf
+        self._shown: View | None = None
+
+    def start(self, reading: Reading, channels: Channels) -> None:
+        self._begin()
+
+    def stop(self) -> None:
+        self._begin()
+
+    def view(self) -> View | None:
+        """The open directions of this tick, where it was stepped."""
+        shown, self._shown = self._shown, None
+        return shown
+
+    def step(self, reading: Reading, channels: Channels) -> tuple[Command, Report]:
+        heading = wanted_heading(channels)
+        if heading is None:
+            self._way.rest()
+            return STOP, Report("failed", {"reason": "there is no heading"})
+        if not self._known():
+            return STOP, Report(details={"reason": "nothing has been measured yet"})
+        told = reading.odometry
+        now = Drive(told.speed, told.turn_rate / self.settings.pilot.slip)
+        if self._way.goes_back:
+            drive, doing = self._back(now, reading.stamp), "going back"
+            if drive is not None:
+                return self._command(drive), Report(details={"doing": doing})
+        return self._forward(heading, now, reading.stamp, channels.get(KEEP_OFF) is True)
+
+    def _forward(self, heading: float, now: Drive, stamp: float, keep_off: bool) -> tuple[Command, Report]:
+        pose, pilot = self._place.pose, self.settings.pilot
+        self._way.advance(pose, stamp)
+        choice = self._choose(heading, now, keep_off)
+        direction = choice.direction
+        if self._way.is_stalled(stamp):
+            self._way.turn_back(pose, pose.theta if direction is None else direction, stamp)
+        if direction is None:
+            return self._command(self._blocked(now, stamp)), Report(details={"direction": None})
+        seen = Surrounds(self._near.points, self._near.sees_all)
+        drive = towards(wrap(direction - pose.theta), now, seen, pilot)
+        return self._command(drive), Report(details={"direction": round(direction, 3)})
+
+    def _choose(self, heading: float, now: Drive, keep_off: bool) -> Choice:
+        pose = self._place.pose
+        kept_off = [self._near.points, moved(self._way.dead_ends, MAP, pose)]
+        points = np.concatenate([*kept_off, self._trail()] if keep_off else kept_off)
+        radius = abs(now.speed) / self.settings.pilot.max_turn_rate
+        choice = self._vfh.choose(points, pose.theta, heading, radius)
+        self._shown = sectors_view(~choice.blocked, pose.theta)
+        return choice
+
+    def _blocked(self, now: Drive, stamp: float) -> Drive | None:
+        """Nothing is open: turn where that shows something new and the hull is free, else go back."""
+        pilot = self.settings.pilot
+        if self._near.sees_all or not may_turn(self._near.points, pilot):
+            self._way.turn_back(self._place.pose, self._place.heading, stamp)
+            return None
+        return Drive(0.0, pilot.max_turn_rate / 2 if self.settings.left else -pilot.max_turn_rate / 2)
+
+    def _back(self, now: Drive, stamp: float) -> Drive | None:
+        """Backwards towards the next place of the way back; None when it has come to its end."""
+        pose, pilot = self._place.pose, self.settings.pilot
+        to = self._way.next_place(pose, stamp)
+        if to is None:
+            return None
+        aside = wrap(math.atan2(to[1] - pose.y, to[0] - pose.x) - pose.theta - math.pi)
+        turn = max(-pilot.max_turn_rate, min(pilot.max_turn_rate, 1.5 * aside))
+        speeds = BACKWARDS if abs(aside) < pilot.on_the_spot else ()
+        for wanted in (*(Drive(-pilot.cruise * share, turn * share * 2) for share in speeds), Drive(0.0, turn)):
+            if safe(wanted, now, self._near.points, pilot):
+                return wanted
+        seen = Surrounds(self._near.points, self._near.sees_all)
+        return towards(wrap(aside + math.pi), now, seen, pilot) or Drive(0.0, 0.0)
+
+    def _command(self, drive: Drive | None) -> Command:
+        """What the tracks are told; nothing: brake."""
+        if drive is None:
+            return STOP
+        return Command(Drive(drive.speed, drive.turn_rate * self.settings.pilot.slip))
