@@ -100,12 +100,10 @@ def acquire(points: Floats, settings: FitSettings, chance: Generator, accept: fl
     return None if best is None else Fit(best[2], best[3], best[1])
 
 
-def track(points: Floats, before: Line, settings: FitSettings) -> Fit | None:
+def track(points: Floats, before: Line, settings: FitSettings, least: int) -> Fit | None:
     """The wall a scan later: the line through what lies near the line of before. Its normal keeps its sense."""
-    if len(points) < settings.least:
-        return None
     near = np.abs(before.off(points)) <= settings.track_band
-    if np.count_nonzero(near) < settings.least:
+    if np.count_nonzero(near) < max(2, least):
         return None
     line, residual = _best_line(_moments(points[near]).sum(axis=0))
     if math.cos(line.normal - before.normal) < 0:

@@ -25,9 +25,9 @@ from behaviours.cores.wall_law import NEAREST, LawSettings, bend
 from behaviours.cores.wall_loss import GAP, End, end_of, invented
 from behaviours.cores.wall_state import FilterSettings, WallState, as_line, begun, predicted, updated
 from behaviours.estimators.surroundings import scan_points
-from behaviours.interface import Channels, Floats, Odometry, Reading, Report, View, wrap
+from behaviours.interface import Channels, Floats, Odometry, Reading, Report, Scan, View, wrap
 
-Mode = Literal["none", "wall", "end", "lost"]
+Mode = Literal["none", "wall", "end", "corner", "search", "lost"]
 NOTHING = np.zeros((0, 2))
 
 
@@ -114,6 +114,10 @@ class FittedWall:
         self._points, self._added = points, NOTHING
         self._scans += 1
         self._new = self._scans % self.settings.shown_every == 0
+        self._take(reading.lidar, points)
+
+    def _take(self, scan: Scan, points: Floats) -> None:
+        """A scan that has come, and its points with the wall to the right."""
         self.front = self._nearest_ahead(points)
         self._look(points)
 
@@ -177,16 +181,22 @@ class FittedWall:
         narrow = self._narrow = self._narrow or abs(state.angle) < settings.narrow
         if narrow:
             points = points[settings.view.holds(points)]
-        fit = track(points, as_line(state), settings.fit)
+        invents = settings.loss and narrow and not settings.corners
+        fit = track(points, as_line(state), settings.fit, settings.fit.least // 2 if invents else settings.fit.least)
         if fit is None:
             self._lose()
             return
+        end = end_of(fit, points, settings.view) if narrow else None
+        if end is not None and invents:
+            self._added = invented(fit, points, end, settings.view)
+        if np.count_nonzero(fit.inliers) + len(self._added) < settings.fit.least:
+            self._lose()
+            return
+        self.end = end
         self.state = updated(state, fit.line, settings.filter)
-        self.end = end_of(fit, points, settings.view) if narrow else None
         self.curvature = self._curvature(fit, points) if narrow else 0.0
         self._points = points
         self._show(fit)
-        end = self.end
         if settings.corners and end is not None and end.gap > GAP and end.station <= settings.corner.abreast:
             self.mode, self._pivot = "end", end.point
 
@@ -200,16 +210,11 @@ class FittedWall:
     def _curvature(self, fit: Fit, points: Floats) -> float:
         assert self.end is not None
         settings = self.settings
-        if settings.loss and not settings.corners:
-            self._added = invented(fit, points, self.end, settings.view)
-        cluster = np.concatenate([points[fit.inliers], self._added])
-        stations = fit.line.stations(cluster)
-        # what is invented lies ahead of the end, also when the robot is past it and the ray leads back
-        seen = len(cluster) - len(self._added)
-        stations[seen:] = np.maximum(stations[seen:], stations[:seen].max() + NEAREST)
+        on = points[fit.inliers]
+        stations = fit.line.stations(on)
         order = np.argsort(stations, kind="stable")
-        heights = -fit.line.off(cluster)
-        return bend(stations[order], heights[order], per_metre=settings.per_metre)
+        cluster = np.concatenate([on[order], self._added])
+        return bend(fit.line.stations(cluster), -fit.line.off(cluster), per_metre=settings.per_metre)
 
     # --- what to look at --------------------------------------------------------------------------------
 
