@@ -1,10 +1,11 @@
-"""Corners that a straight line knows nothing of: pivots about the end of a wall, and walls that bar the way.
+"""What a straight line knows nothing of: ends of walls, corners, dead ends, doors, and things that stand in the way.
 
-Takes: points (n, 2) [m] in the robot frame, the wall to the right; where the followed wall ends. Gives: the line to
-steer by while turning round an end, the wall behind it when it comes into sight, and the wall ahead. Leaves alone:
-the steering, and walls to the left, which are in the mirror.
+Takes: points (n, 2) [m] in the robot frame, the wall to the right; what was touched last. Gives: where the wall ends,
+the line to steer by while turning round a place, the wall behind it when it comes into sight, how far to turn away from
+what bars the way, and how much room there is. Leaves alone: the steering, and walls to the left (in the mirror).
 
-Round the end of a wall the robot goes on a circle about it, as if the wall had a tangent there. These are no parts of
+Round the end of a wall the robot goes on a circle about it, as if the wall had a tangent there. What bars the way is
+found by a disc that is swept ahead; the place that it touches is turned about in the same manner. These are no parts of
 Bayer 2012; they are what its conclusions ask for.
 """
 
@@ -17,70 +18,132 @@ import numpy as np
 from numpy.random import Generator
 
 from behaviours.cores.wall_fit import Fit, FitSettings, Line, acquire
-from behaviours.interface import Floats
+from behaviours.interface import Floats, Vec2
 
-Point = tuple[float, float]
+HALF_A_TURN = math.pi
+SHRINK = 0.85
 
 
 @dataclass(frozen=True, slots=True)
 class CornerSettings:
-    """All chosen here.
+    """All chosen here; lengths [m], angles [rad].
 
-    abreast [m]: a pivot begins when the end of the wall is so near ahead; near [m]: the new wall lies so near to the
-    end of the old one; turned [rad]: it is followed when the heading is turned no more against it; leads [m]: it must
-    go on so far ahead; early [m]: a wall ahead is followed when it is so much beyond the stand-off; lane [m]: half the
-    width of what bars the way.
+    door: where the wall goes on behind an opening no wider, the opening is passed by; abreast: a pivot begins when the
+    end of the wall is so near ahead; turned: a wall is followed when the heading is turned no more against it; leads:
+    it must go on so far ahead; on: a place so near to a line lies on it; leap: the place of contact moves by no more
+    from scan to scan; disc: radius of the disc that is swept, as a share of the stand-off; sweep: how far it is swept,
+    too; barred: from so much of a turn on what is ahead is followed; beside: what stands so little ahead of the robot
+    or behind it bounds the room.
     """
 
+    door: float = 1.2
     abreast: float = 0.05
-    near: float = 1.0
     turned: float = math.radians(50)
     leads: float = 0.3
-    early: float = 0.35
-    lane: float = 0.35
+    on: float = 0.15
+    leap: float = 0.4
+    disc: float = 0.85
+    sweep: float = 0.9
+    barred: float = math.radians(25)
+    beside: float = 0.25
 
 
-def tangent(end: Point) -> Line:
-    """The line to steer by: through the end of the wall, square to the way there."""
-    return Line(math.atan2(end[1], end[0]), math.hypot(*end))
+def tangent(at: Vec2) -> Line:
+    """The line to steer by: through a place, square to the way there."""
+    return Line(math.atan2(at[1], at[0]), math.hypot(*at))
 
 
-def beyond(points: Floats, end: Point, fit: FitSettings, corner: CornerSettings, chance: Generator) -> Fit | None:
-    """The wall that goes on behind the end: it passes near to it, runs on ahead, and the robot is nearly along it."""
-    near = np.hypot(points[:, 0] - end[0], points[:, 1] - end[1]) <= 2.5 * corner.near
+def last_of(fit: Fit, points: Floats, door: float, spacing: float) -> tuple[float, Vec2]:
+    """How far along the wall [m] it goes on from the robot with no opening wider than the door, and its last point.
+
+    spacing [rad]: of the beams. Where they lie farther apart than the door, on a wall that is seen at a slant, that is
+    no opening.
+    """
+    on = points[fit.inliers]
+    stations = fit.line.stations(on)
+    order = np.argsort(stations, kind="stable")
+    sorted_ = stations[order]
+    height = max(abs(fit.line.distance), 0.05)
+    slant = 2.5 * spacing * (sorted_[1:] ** 2 + height**2) / height
+    wide = (np.diff(sorted_) > np.maximum(door, slant)) & (sorted_[1:] > 0.0)
+    last = int(np.argmax(wide)) if wide.any() else len(order) - 1
+    x, y = on[order[last]]
+    return float(sorted_[last]), (float(x), float(y))
+
+
+def beyond(
+    points: Floats, contact: Vec2, fit: FitSettings, corner: CornerSettings, reach: float, chance: Generator
+) -> Fit | None:
+    """The wall at the place of contact: it runs on ahead, and the robot is nearly along it."""
+    near = np.hypot(points[:, 0] - contact[0], points[:, 1] - contact[1]) <= reach
     found = acquire(points[near], fit, chance, corner.turned)
-    if found is None:
+    if found is None or abs(float(found.line.off(np.array([contact]))[0])) > corner.on:
         return None
-    on = points[near][found.inliers]
-    stations = found.line.stations(on)
-    gaps = np.hypot(on[:, 0] - end[0], on[:, 1] - end[1])
-    if float(stations.max()) < corner.leads or float(gaps.min()) > corner.near:
+    stations = found.line.stations(points[near][found.inliers])
+    if float(stations.max()) < corner.leads:
         return None
-    return _over(found, near)
-
-
-def ahead(points: Floats, fit: FitSettings, corner: CornerSettings, stand_off: float, chance: Generator) -> Fit | None:
-    """The wall that bars the way and is near enough to be followed from now on."""
-    most = stand_off + corner.early
-    lane = (points[:, 0] > 0) & (np.abs(points[:, 1]) <= corner.lane) & (points[:, 0] <= 2.0 * most)
-    if np.count_nonzero(lane) < fit.least // 2:
-        return None
-    front = (points[:, 0] > 0) & (np.abs(points[:, 1]) <= 2.0 * most) & (points[:, 0] <= 2.5 * most)
-    found = acquire(points[front], fit, chance)
-    if found is None or not found.line.distance <= most:
-        return None
-    x, y = found.line.n
-    if x < math.sin(math.radians(25)):  # it runs beside the robot
-        return None
-    on = points[front][found.inliers]
-    crossing = found.line.distance / x  # where the way meets it
-    spread = on[:, 1]
-    meets = float(spread.min()) - corner.lane <= 0.0 <= float(spread.max()) + corner.lane
-    return _over(found, front) if meets and crossing <= 2.0 * most and abs(y) < 1.0 else None
-
-
-def _over(found: Fit, part: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Fit:
-    """The fit over all points, of which it was made on a part."""
-    inliers = np.zeros(len(part), dtype=np.bool_)
-    inliers[np.flatnonzero(part)[found.inliers]] = True
+    inliers = np.zeros(len(points), dtype=np.bool_)
+    inliers[np.flatnonzero(near)[found.inliers]] = True
     return Fit(found.line, inliers, found.residual)
+
+
+def anchored(points: Floats, contact: Vec2, leap: float) -> Vec2 | None:
+    """The point nearest to the robot of those near to where the disc touched; None where there are none."""
+    near = points[np.hypot(points[:, 0] - contact[0], points[:, 1] - contact[1]) <= leap]
+    return nearest(near)
+
+
+def nearest(points: Floats) -> Vec2 | None:
+    """The point nearest to the robot; None without points."""
+    if not len(points):
+        return None
+    x, y = points[int((points * points).sum(axis=1).argmin())]
+    return float(x), float(y)
+
+
+def room(points: Floats, stand_off: float, beside: float, least: float) -> float:
+    """The stand-off [m] for which there is room: no more than half of the way between right and left."""
+    level = points[np.abs(points[:, 0]) <= beside, 1]
+    right, left = level[level < 0], level[level > 0]
+    if not (right.size and left.size):
+        return stand_off
+    return max(least, min(stand_off, float(left.min() - right.max()) / 2))
+
+
+def barred(points: Floats, radius: float, reach: float, least: float) -> tuple[float, Vec2 | None]:
+    """How far [rad] to turn left until a disc gets on for reach [m], and what it touches on its right then.
+
+    A disc that fits nowhere is made smaller, at the smallest `least` [m]; half a turn where that fits nowhere, too.
+    """
+    distance = np.hypot(points[:, 0], points[:, 1])
+    bearing = np.arctan2(points[:, 1], points[:, 0])
+    while True:
+        turn, touched = _swept(distance, bearing, radius, reach)
+        at = None if touched is None else (float(points[touched, 0]), float(points[touched, 1]))
+        if turn < math.tau:
+            return turn, at
+        if radius <= least:
+            return HALF_A_TURN, at
+        radius = max(least, radius * SHRINK)
+
+
+def _swept(distance: Floats, bearing: Floats, radius: float, reach: float) -> tuple[float, int | None]:
+    """The turn, a whole one where there is no way; the point that bounds it. What is in the disc comes no nearer."""
+    near = np.flatnonzero(distance < radius + reach)
+    if not near.size:
+        return 0.0, None
+    r = np.maximum(distance[near], radius)
+    at_the_end = np.arccos(np.clip((reach * reach + r * r - radius * radius) / (2.0 * reach * r), -1.0, 1.0))
+    half = np.where(r * r - radius * radius <= reach * reach, np.arcsin(radius / r), at_the_end)
+    middle = bearing[near]
+    begins = np.concatenate([middle - half, middle - half + math.tau])
+    order = np.argsort(begins, kind="stable")
+    begins, ends = begins[order], np.concatenate([middle + half, middle + half + math.tau])[order]
+    reached = np.maximum.accumulate(np.maximum(ends, 0.0))
+    if begins[0] > 0.0:
+        return 0.0, None
+    first = int(np.argmax(np.append(begins[1:], math.inf) > reached))
+    turn = float(reached[first])
+    if turn <= 0.0:
+        return 0.0, None
+    return turn, int(near[order[int(ends[: first + 1].argmax())] % len(near)])

@@ -4,7 +4,7 @@ Takes: every reading. Gives: `wall`, offset and angle filtered, how the wall cur
 what to look at. Leaves alone: steering.
 
 All is computed for a wall to the right; for one to the left the scan is mirrored before, and who steers mirrors the
-turn. After Bayer 2012; `corners` adds pivots about ends and walls that bar the way.
+turn. After Bayer 2012; `WallAndCorners` goes on where the wall does not.
 """
 
 from __future__ import annotations
@@ -17,11 +17,9 @@ from typing import Literal
 import numpy as np
 from numpy.random import Generator, default_rng
 
-from behaviours.cores import corner
-from behaviours.cores.corner import CornerSettings
 from behaviours.cores.view_path import ViewPath
-from behaviours.cores.wall_fit import Fit, FitSettings, Line, acquire, track
-from behaviours.cores.wall_law import NEAREST, LawSettings, bend
+from behaviours.cores.wall_fit import Fit, FitSettings, acquire, track
+from behaviours.cores.wall_law import LawSettings, bend
 from behaviours.cores.wall_loss import GAP, End, end_of, invented
 from behaviours.cores.wall_state import FilterSettings, WallState, as_line, begun, predicted, updated
 from behaviours.estimators.surroundings import scan_points
@@ -36,14 +34,15 @@ class FittedWallSettings:
     """left: the wall is to the left. narrow [rad]: the view is restricted once the robot is so well along the wall.
 
     accept [rad]: a wall that is found may be turned so far; loss: points are invented where the wall ends; curve: the
-    curvature counts; corners: pivots, walls ahead, and looking for the wall again when it is lost.
+    curvature counts; lane, early [m]: what lies in half such a width ahead bars the way, so much before the stand-off.
     """
 
     left: bool = False
     loss: bool = True
     curve: bool = True
     per_metre: bool = False
-    corners: bool = False
+    lane: float = 0.35
+    early: float = 0.35
     narrow: float = math.radians(30)
     accept: float = math.radians(135)
     shown_every: int = 5
@@ -52,11 +51,10 @@ class FittedWallSettings:
     view: ViewPath = field(default_factory=ViewPath)
     filter: FilterSettings = field(default_factory=FilterSettings)
     law: LawSettings = field(default_factory=LawSettings)
-    corner: CornerSettings = field(default_factory=CornerSettings)
 
 
 class FittedWall:
-    """mode: "wall" while one is followed, "end" in a pivot, "none" before the first, "lost" after the last.
+    """mode: "wall" while one is followed, "none" before the first, "lost" after the last.
 
     state: offset and angle; curvature: K of the law; end: where the wall ends; front [m]: what is ahead in the lane.
     """
@@ -69,7 +67,6 @@ class FittedWall:
         self.curvature = 0.0
         self.end: End | None = None
         self.front = math.inf
-        self._pivot: corner.Point = (0.0, 0.0)
         self._points: Floats = NOTHING
         self._fit: Fit | None = None
         self._added: Floats = NOTHING
@@ -81,8 +78,8 @@ class FittedWall:
 
     @property
     def is_found(self) -> bool:
-        """A wall is followed, or its end."""
-        return self.mode in ("wall", "end")
+        """A wall is followed."""
+        return self.mode == "wall"
 
     @property
     def ends(self) -> bool:
@@ -91,16 +88,9 @@ class FittedWall:
 
     def target(self) -> tuple[float, float, float] | None:
         """Offset [m], angle [rad] and curvature to steer by."""
-        law = self.settings.law
-        match self.mode:
-            case "wall":
-                assert self.state is not None
-                return self.state.offset, self.state.angle, self.curvature if self.settings.curve else 0.0
-            case "end":
-                line = corner.tangent(self._pivot)
-                return line.distance, wrap(-line.normal - math.pi / 2), -1.0 / law.stand_off / law.curvature_gain
-            case _:
-                return None
+        if self.mode != "wall" or self.state is None:
+            return None
+        return self.state.offset, self.state.angle, self.curvature if self.settings.curve else 0.0
 
     # --- a tick ---------------------------------------------------------------------------------------
 
@@ -131,37 +121,24 @@ class FittedWall:
         turn = -turn if self.settings.left else turn
         if self.state is not None:
             self.state = predicted(self.state, way, turn, 1.0, self.settings.filter)
-        x, y = self._pivot[0] - way * math.cos(turn / 2), self._pivot[1] - way * math.sin(turn / 2)
-        c, s = math.cos(turn), math.sin(turn)
-        self._pivot = (c * x + s * y, c * y - s * x)
 
     def _nearest_ahead(self, points: Floats) -> float:
-        lane = (points[:, 0] > 0) & (np.abs(points[:, 1]) <= self.settings.corner.lane)
+        lane = (points[:, 0] > 0) & (np.abs(points[:, 1]) <= self.settings.lane)
         return float(points[lane, 0].min()) if lane.any() else math.inf
 
+    @property
+    def bars(self) -> bool:
+        """Something bars the way where the robot should turn."""
+        return self.front <= self.settings.law.stand_off + self.settings.early
+
     def _look(self, points: Floats) -> None:
-        settings = self.settings
         match self.mode:
             case "wall":
                 self._follow(points)
-            case "end":
-                behind = corner.beyond(points, self._pivot, settings.fit, settings.corner, self._chance)
-                self._found(behind) if behind is not None else self._show(None)
-            case "none" | "lost":
-                if self.mode == "none" or settings.corners:
-                    self._search(points)
-        if settings.corners and self.mode in ("wall", "end"):
-            barring = corner.ahead(points, settings.fit, settings.corner, settings.law.stand_off, self._chance)
-            if barring is not None and not self._is_followed(barring.line):
-                self._found(barring)
-
-    def _is_followed(self, line: Line) -> bool:
-        """Whether it is the wall that is followed already."""
-        return (
-            self.mode == "wall"
-            and self.state is not None
-            and abs(wrap(line.normal - as_line(self.state).normal)) < 0.35
-        )
+            case "none":
+                self._search(points)
+            case _:
+                pass
 
     def _search(self, points: Floats) -> None:
         found = acquire(points, self.settings.fit, self._chance, self.settings.accept)
@@ -181,7 +158,7 @@ class FittedWall:
         narrow = self._narrow = self._narrow or abs(state.angle) < settings.narrow
         if narrow:
             points = points[settings.view.holds(points)]
-        invents = settings.loss and narrow and not settings.corners
+        invents = settings.loss and narrow
         fit = track(points, as_line(state), settings.fit, settings.fit.least // 2 if invents else settings.fit.least)
         if fit is None:
             self._lose()
@@ -197,14 +174,9 @@ class FittedWall:
         self.curvature = self._curvature(fit, points) if narrow else 0.0
         self._points = points
         self._show(fit)
-        if settings.corners and end is not None and end.gap > GAP and end.station <= settings.corner.abreast:
-            self.mode, self._pivot = "end", end.point
 
     def _lose(self) -> None:
-        if self.settings.corners and self.end is not None and self.end.gap > GAP:
-            self.mode, self._pivot = "end", self.end.point
-        else:
-            self.mode, self.state, self.curvature, self.end = "lost", None, 0.0, None
+        self.mode, self.state, self.curvature, self.end = "lost", None, 0.0, None
         self._show(None)
 
     def _curvature(self, fit: Fit, points: Floats) -> float:

@@ -1,0 +1,203 @@
+"""The wall beside the robot and all that comes after it: ends, corners, dead ends, doors, clutter, curves.
+
+Takes: every reading. Gives: what `FittedWall` gives, of a wall that is followed further than a line goes; what stands
+round the robot, how far to turn away from what bars the way, and the stand-off for which there is room. Leaves alone:
+steering.
+
+All is computed for a wall to the right. Where no line is to be seen, what counts is the place of contact: the nearest
+point of what was followed last, found again in each scan.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from behaviours.cores import corner
+from behaviours.cores.corner import CornerSettings
+from behaviours.cores.wall_fit import Fit, acquire, track
+from behaviours.cores.wall_loss import End
+from behaviours.cores.wall_state import as_line, updated
+from behaviours.estimators.fitted_wall import FittedWall, FittedWallSettings
+from behaviours.estimators.surroundings import moved
+from behaviours.interface import Channels, Floats, Pose, Reading, Report, Scan, Vec2, wrap
+
+TOLD = 0.1
+"""A scan of which a smaller share says anything is none."""
+INSIDE = 0.05
+"""[m] What lies so far within the hull is a mistake of the sensor."""
+BESIDE = (math.radians(-170), math.radians(60))
+"""Between these bearings lies what a lost wall may be found on again."""
+
+
+@dataclass(frozen=True, slots=True)
+class AroundSettings:
+    """hull_radius, margin [m]; patience [s]: so long a wall is looked for that is lost."""
+
+    hull_radius: float = 0.25
+    margin: float = 0.06
+    patience: float = 12.0
+    corner: CornerSettings = field(default_factory=CornerSettings)
+
+
+class WallAndCorners(FittedWall):
+    """mode: also "corner" before what bars the way, and "search" for a wall that is out of sight.
+
+    around: (n, 2) [m] what stands round the robot, with the wall to the right; turn [rad]: to the left, to get past
+    what is ahead.
+    """
+
+    def __init__(self, settings: FittedWallSettings, around: AroundSettings) -> None:
+        super().__init__(settings)
+        self._here = around
+        self.around: Floats = np.zeros((0, 2))
+        self.turn = 0.0
+        self._touched: Vec2 | None = None
+        self.stand_off = settings.law.stand_off
+        self._contact: Vec2 = (0.0, 0.0)
+        self._spacing = 0.01
+        self._stamp = self._seen_at = 0.0
+
+    # --- what others ask ------------------------------------------------------------------------------
+
+    @property
+    def is_found(self) -> bool:
+        return self.mode in ("wall", "end", "corner")
+
+    @property
+    def bars(self) -> bool:
+        """Something bars the way."""
+        return self.mode == "corner" or self.turn > self._here.corner.barred
+
+    def target(self) -> tuple[float, float, float] | None:
+        match self.mode:
+            case "end" | "corner":
+                line = corner.tangent(self._contact)
+                round_ = -1.0 / self.stand_off / self.settings.law.curvature_gain if self.mode == "end" else 0.0
+                return line.distance, wrap(-line.normal - math.pi / 2), round_
+            case "search":
+                return self.stand_off, 0.0, -0.5 / self.stand_off / self.settings.law.curvature_gain
+            case _:
+                return super().target()
+
+    # --- a tick ---------------------------------------------------------------------------------------
+
+    def update(self, reading: Reading, reports: Mapping[str, Report], channels: Channels) -> None:
+        before = self._last
+        self._stamp = reading.stamp
+        if before is not None:
+            was, is_ = _mirrored(before.pose, self.settings.left), _mirrored(reading.odometry.pose, self.settings.left)
+            self.around = moved(self.around, was, is_)
+            ((x, y),) = moved(np.array([self._contact]), was, is_).tolist()
+            self._contact = (x, y)
+        super().update(reading, reports, channels)
+
+    def _take(self, scan: Scan, points: Floats) -> None:
+        """A scan that has come."""
+        self.around = points
+        self._spacing = float(scan.bearings[1] - scan.bearings[0]) if len(scan.bearings) > 1 else 0.01
+        if not self._tells(scan, points):
+            self.mode, self.state, self.end = "lost", None, None
+            self.around = np.zeros((0, 2))
+            self._show(None)
+            return
+        self._measure()
+        self._look(points)
+
+    def _tells(self, scan: Scan, points: Floats) -> bool:
+        """Whether enough of the beams say something that can be."""
+        says = np.count_nonzero(np.isfinite(scan.ranges) & (scan.ranges > scan.min_range))
+        within = np.count_nonzero(np.hypot(points[:, 0], points[:, 1]) < self._here.hull_radius - INSIDE)
+        return says - within >= max(1.0, TOLD * len(scan.ranges))
+
+    def _measure(self) -> None:
+        """How much room there is, and how far to turn."""
+        here, law = self._here, self.settings.law
+        least = here.hull_radius + here.margin
+        self.stand_off = corner.room(self.around, law.stand_off, here.corner.beside, least)
+        radius = max(least, here.corner.disc * self.stand_off)
+        reach = here.corner.sweep * self.stand_off
+        self.turn, self._touched = corner.barred(self.around, radius, reach, least)
+
+    def _look(self, points: Floats) -> None:
+        match self.mode:
+            case "wall":
+                self._follow(points)
+            case "end" | "corner":
+                self._turn_about(points)
+            case "none" | "search" | "lost":
+                self._seek(points)
+        if self.is_found:
+            self._seen_at = self._stamp
+            if self.turn > self._here.corner.barred and self._touched is not None:
+                self._pivot_about(self._touched, "corner")
+
+    def _pivot_about(self, at: Vec2, mode: str) -> None:
+        self.mode, self.state, self.end = ("end" if mode == "end" else "corner"), None, None
+        self._contact = at
+        self._show(None)
+
+    def _turn_about(self, points: Floats) -> None:
+        here = self._here
+        contact = corner.anchored(points, self._contact, here.corner.leap)
+        if contact is None:
+            self.mode = "search"
+            self._show(None)
+            return
+        self._contact = contact
+        reach = 2.5 * self.settings.law.stand_off
+        behind = corner.beyond(points, contact, self.settings.fit, here.corner, reach, self._chance)
+        self._found(behind) if behind is not None else self._show(None)
+
+    def _follow(self, points: Floats) -> None:
+        settings, state = self.settings, self.state
+        assert state is not None
+        narrow = self._narrow = self._narrow or abs(state.angle) < settings.narrow
+        held = points[settings.view.holds(points)] if narrow else points
+        fit = track(held, as_line(state), settings.fit, settings.fit.least)
+        if fit is None:
+            self._lose()
+            return
+        self.state = updated(state, fit.line, settings.filter)
+        self._points = held
+        self._show(fit)
+        if narrow:
+            self._mind_the_end(fit, held)
+
+    def _mind_the_end(self, fit: Fit, points: Floats) -> None:
+        station, at = corner.last_of(fit, points, self._here.corner.door, self._spacing)
+        self.end = End(station, self.settings.view.end_of(fit.line) - station, at)
+        if station <= self._here.corner.abreast:
+            self._pivot_about(at, "end")
+
+    def _lose(self) -> None:
+        """On round the last of the wall, or round what is nearest on its side."""
+        at = self.end.point if self.end is not None else corner.nearest(self._beside())
+        if at is not None and math.hypot(*at) <= 2.0 * self.settings.law.stand_off:
+            self._pivot_about(at, "end")
+        else:
+            self.mode, self.state, self.end = "search", None, None
+            self._show(None)
+
+    def _beside(self) -> Floats:
+        bearing = np.arctan2(self.around[:, 1], self.around[:, 0])
+        return self.around[(bearing >= BESIDE[0]) & (bearing <= BESIDE[1])]
+
+    def _seek(self, points: Floats) -> None:
+        found = acquire(points, self.settings.fit, self._chance, self.settings.accept)
+        near = corner.nearest(self._beside())
+        if found is not None:
+            self._found(found)
+        elif near is not None and math.hypot(*near) <= 2.0 * self.settings.law.stand_off:
+            self._pivot_about(near, "end")
+        else:
+            self._show(None)
+            if self.mode == "search" and self._stamp - self._seen_at > self._here.patience:
+                self.mode = "lost"
+
+
+def _mirrored(pose: Pose, left: bool) -> Pose:
+    return Pose(pose.x, -pose.y, -pose.theta) if left else pose
