@@ -57,6 +57,7 @@ from behaviours.libraries.perimeter import LIBRARY as PERIMETER
 from behaviours.libraries.recent_path import LIBRARY as RECENT_PATH
 from behaviours.libraries.stasis import LIBRARY as STASIS
 from behaviours.libraries.svfh import LIBRARY as SVFH
+from behaviours.libraries.wall_by_hough import LIBRARY as WALL_BY_HOUGH
 from behaviours.libraries.wall_by_ransac import LIBRARY as WALL_BY_RANSAC
 
 NAVIGATE = "move-according-to-NaT-plan"
@@ -744,6 +745,7 @@ LIBRARIES: Mapping[str, Library] = MappingProxyType(
             SVFH,
             FLIPPERS,
             STASIS,
+            WALL_BY_HOUGH,
             WALL_BY_RANSAC,
         )
     }

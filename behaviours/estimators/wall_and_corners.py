@@ -111,7 +111,7 @@ class WallAndCorners(FittedWall):
         """Whether enough of the beams say something that can be."""
         says = np.count_nonzero(np.isfinite(scan.ranges) & (scan.ranges > scan.min_range))
         within = np.count_nonzero(np.hypot(points[:, 0], points[:, 1]) < self._here.hull_radius - INSIDE)
-        return says - within >= max(1.0, TOLD * len(scan.ranges))
+        return bool(says - within >= max(1.0, TOLD * len(scan.ranges)))
 
     def _measure(self) -> None:
         """How much room there is, and how far to turn."""
