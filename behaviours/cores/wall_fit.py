@@ -23,6 +23,9 @@ from numpy.typing import NDArray
 from behaviours.interface import Floats, wrap
 
 Mask = NDArray[np.bool_]
+SHORTEST, SLENDER = 0.005, 2.0
+"""Points on a wall have a standard deviation [m] along it of no less, and of no fewer times that across it while it is
+looked for (chosen here); a wall that is followed round a corner is in between as broad as long."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +40,7 @@ class FitSettings:
     least: int = 20
     residual: float = 4e-4
     acquire_band: float = 0.08
-    track_band: float = 0.10
+    track_band: float = 0.08
     patient: bool = False
 
 
@@ -89,23 +92,30 @@ def acquire(points: Floats, settings: FitSettings, chance: Generator, accept: fl
     enough = sums[:, 0] >= max(settings.least, settings.share * count)
     best: tuple[float, float, Line, Mask] | None = None
     for k in np.flatnonzero(enough):
-        line, residual = _best_line(sums[k])
-        if abs(wrap(-line.normal - math.pi / 2)) > accept:
+        straight = _best_line(*sums[k].tolist(), slender=SLENDER)
+        if straight is None or abs(wrap(-straight[0].normal - math.pi / 2)) > accept:
             continue
-        if best is None or (-sums[k, 0], residual) < best[:2]:
+        line, residual = straight
+        at_once = residual <= settings.residual and not settings.patient
+        if at_once or best is None or (-sums[k, 0], residual) < best[:2]:
             best = -float(sums[k, 0]), residual, line, near[k]
-        if residual <= settings.residual and not settings.patient:
-            best = -float(sums[k, 0]), residual, line, near[k]
+        if at_once:
             break
     return None if best is None else Fit(best[2], best[3], best[1])
 
 
-def track(points: Floats, before: Line, settings: FitSettings, least: int) -> Fit | None:
+def track(points: Floats, before: Line, settings: FitSettings) -> Fit | None:
     """The wall a scan later: the line through what lies near the line of before. Its normal keeps its sense."""
     near = np.abs(before.off(points)) <= settings.track_band
-    if np.count_nonzero(near) < max(2, least):
+    count = int(np.count_nonzero(near))
+    if count < max(2, settings.least):
         return None
-    line, residual = _best_line(_moments(points[near]).sum(axis=0))
+    x, y = points[near].T
+    sums = count, float(x.sum()), float(y.sum()), float(x @ x), float(x @ y), float(y @ y)
+    best = _best_line(*sums)
+    if best is None:
+        return None
+    line, residual = best
     if math.cos(line.normal - before.normal) < 0:
         line = Line(wrap(line.normal + math.pi), -line.distance)
     return Fit(line, near, residual)
@@ -129,14 +139,20 @@ def _moments(points: Floats) -> Floats:
     return np.column_stack([np.ones(len(points)), x, y, x * x, x * y, y * y])
 
 
-def _best_line(sums: Floats) -> tuple[Line, float]:
-    """Total least squares from the sums of the moments; the normal points away from the robot."""
-    n, x, y, xx, xy, yy = map(float, sums)
+def _best_line(
+    n: float, x: float, y: float, xx: float, xy: float, yy: float, slender: float = 1.0
+) -> tuple[Line, float] | None:
+    """Total least squares from the sums of the moments; the normal points away from the robot.
+
+    None where the points are no line: all in one place, or not so many times longer than broad.
+    """
     mx, my = x / n, y / n
     cxx, cxy, cyy = xx / n - mx * mx, xy / n - mx * my, yy / n - my * my
+    middle, half = (cxx + cyy) / 2, math.hypot((cxx - cyy) / 2, cxy)
+    if middle + half < max(SHORTEST**2, slender**2 * (middle - half)):
+        return None
     normal = 0.5 * math.atan2(2 * cxy, cxx - cyy) + math.pi / 2
     distance = mx * math.cos(normal) + my * math.sin(normal)
-    residual = (cxx + cyy) / 2 - math.hypot((cxx - cyy) / 2, cxy)
     if distance < 0:
         normal, distance = normal + math.pi, -distance
-    return Line(wrap(normal), distance), max(0.0, residual)
+    return Line(wrap(normal), distance), max(0.0, middle - half)

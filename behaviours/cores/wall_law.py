@@ -8,7 +8,7 @@ omega = v (-k sin(theta) - (y - T) + K) is stable: with y' = v sin(theta), V = (
 V' = -k v sin(theta)^2 <= 0. With a gain on the offset V is (1 - cos(theta)) + offset_gain (y - T)^2 / 2.
 
 Equation (3) sums a from -0.3 N to N / 2. Terms of a and -a cancel each other and a = 0 is 0 / 0, so that what is
-printed is the sum from 0.3 N on. It is a difference of slopes and no curvature; `per_metre` makes one of it.
+printed is the sum beyond 0.3 N. It is a difference of slopes and no curvature; `per_metre` makes one of it.
 """
 
 from __future__ import annotations
@@ -51,11 +51,13 @@ def lyapunov(offset: float, angle: float, law: LawSettings) -> float:
 def bend(stations: Floats, heights: Floats, *, per_metre: bool = False) -> float:
     """K of equation (3) for points along a wall: stations (n,) [m] in rising order, heights (n,) [m] towards the robot.
 
-    Positive where the wall curves towards the robot. per_metre: divided by the mean half span, a curvature [1/m].
+    Points that were invented come last, wherever they lie. A term whose outer points do not lie before and behind the
+    middle is left out, so that there is no K once all that was invented lies behind. Positive where the wall curves
+    towards the robot. per_metre: divided by the mean half span, a curvature [1/m].
     """
     count = len(stations)
     middle = (count - 1) // 2
-    apart = np.arange(max(1, math.ceil(0.3 * count)), count // 2 + 1)
+    apart = np.arange(3 * count // 10 + 1, count // 2 + 1)
     apart = apart[(apart <= middle) & (middle + apart < count)]
     if not apart.size:
         return 0.0

@@ -27,6 +27,8 @@ from behaviours.interface import Channels, Floats, Odometry, Reading, Report, Sc
 
 Mode = Literal["none", "wall", "end", "corner", "search", "lost"]
 NOTHING = np.zeros((0, 2))
+SHOWN = 60
+"""So many points of a wall are shown at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +92,7 @@ class FittedWall:
         """Offset [m], angle [rad] and curvature to steer by."""
         if self.mode != "wall" or self.state is None:
             return None
-        return self.state.offset, self.state.angle, self.curvature if self.settings.curve else 0.0
+        return self.state.offset, self.state.angle, self.curvature
 
     # --- a tick ---------------------------------------------------------------------------------------
 
@@ -100,7 +102,7 @@ class FittedWall:
             return
         points = scan_points(reading.lidar)
         if self.settings.left:
-            points = points * np.array([1.0, -1.0])
+            points = points[::-1] * (1.0, -1.0)
         self._points, self._added = points, NOTHING
         self._scans += 1
         self._new = self._scans % self.settings.shown_every == 0
@@ -158,35 +160,28 @@ class FittedWall:
         narrow = self._narrow = self._narrow or abs(state.angle) < settings.narrow
         if narrow:
             points = points[settings.view.holds(points)]
-        invents = settings.loss and narrow
-        fit = track(points, as_line(state), settings.fit, settings.fit.least // 2 if invents else settings.fit.least)
+        fit = track(points, as_line(state), settings.fit)
         if fit is None:
             self._lose()
             return
-        end = end_of(fit, points, settings.view) if narrow else None
-        if end is not None and invents:
-            self._added = invented(fit, points, end, settings.view)
-        if np.count_nonzero(fit.inliers) + len(self._added) < settings.fit.least:
-            self._lose()
-            return
-        self.end = end
         self.state = updated(state, fit.line, settings.filter)
-        self.curvature = self._curvature(fit, points) if narrow else 0.0
         self._points = points
         self._show(fit)
+        self.end = end_of(fit, points, settings.view) if narrow else None
+        if self.end is not None and settings.loss:
+            self._added = invented(fit, points, self.end, settings.view)
+        self.curvature = self._curvature(fit, points) if narrow and settings.curve else 0.0
 
     def _lose(self) -> None:
         self.mode, self.state, self.curvature, self.end = "lost", None, 0.0, None
         self._show(None)
 
     def _curvature(self, fit: Fit, points: Floats) -> float:
-        assert self.end is not None
-        settings = self.settings
+        """Of the points on the wall from behind to ahead, and after them what was invented."""
         on = points[fit.inliers]
-        stations = fit.line.stations(on)
-        order = np.argsort(stations, kind="stable")
-        cluster = np.concatenate([on[order], self._added])
-        return bend(fit.line.stations(cluster), -fit.line.off(cluster), per_metre=settings.per_metre)
+        on = on[np.argsort(fit.line.stations(on), kind="stable")]
+        cluster = np.concatenate([on, self._added])
+        return bend(fit.line.stations(cluster), -fit.line.off(cluster), per_metre=self.settings.per_metre)
 
     # --- what to look at --------------------------------------------------------------------------------
 
@@ -206,12 +201,12 @@ class FittedWall:
         return {"kind": "lines", "frame": "robot", "at": [self._mirrored(ends)]}
 
     def inliers_view(self) -> View | None:
-        """The points that lie on it."""
+        """Some of the points that lie on it."""
         if not self._new:
             return None
         whole = self._fit is not None and len(self._fit.inliers) == len(self._points)
         on = self._points[self._fit.inliers] if self._fit is not None and whole else NOTHING
-        return self._points_view(on)
+        return self._points_view(on[:: max(1, math.ceil(len(on) / SHOWN))])
 
     def added_view(self) -> View | None:
         """The points that were invented."""

@@ -157,7 +157,7 @@ class WallAndCorners(FittedWall):
         assert state is not None
         narrow = self._narrow = self._narrow or abs(state.angle) < settings.narrow
         held = points[settings.view.holds(points)] if narrow else points
-        fit = track(held, as_line(state), settings.fit, settings.fit.least)
+        fit = track(held, as_line(state), settings.fit)
         if fit is None:
             self._lose()
             return
