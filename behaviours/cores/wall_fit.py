@@ -14,6 +14,7 @@ followed fit.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -92,7 +93,7 @@ def acquire(points: Floats, settings: FitSettings, chance: Generator, accept: fl
     enough = sums[:, 0] >= max(settings.least, settings.share * count)
     best: tuple[float, float, Line, Mask] | None = None
     for k in np.flatnonzero(enough):
-        straight = _best_line(*sums[k].tolist(), slender=SLENDER)
+        straight = _best_line(sums[k].tolist(), SLENDER)
         if straight is None or abs(wrap(-straight[0].normal - math.pi / 2)) > accept:
             continue
         line, residual = straight
@@ -112,7 +113,7 @@ def track(points: Floats, before: Line, settings: FitSettings) -> Fit | None:
         return None
     x, y = points[near].T
     sums = count, float(x.sum()), float(y.sum()), float(x @ x), float(x @ y), float(y @ y)
-    best = _best_line(*sums)
+    best = _best_line(sums)
     if best is None:
         return None
     line, residual = best
@@ -139,13 +140,12 @@ def _moments(points: Floats) -> Floats:
     return np.column_stack([np.ones(len(points)), x, y, x * x, x * y, y * y])
 
 
-def _best_line(
-    n: float, x: float, y: float, xx: float, xy: float, yy: float, slender: float = 1.0
-) -> tuple[Line, float] | None:
-    """Total least squares from the sums of the moments; the normal points away from the robot.
+def _best_line(sums: Sequence[float], slender: float = 1.0) -> tuple[Line, float] | None:
+    """Total least squares from the sums of 1, x, y, xx, xy, yy; the normal points away from the robot.
 
     None where the points are no line: all in one place, or not so many times longer than broad.
     """
+    n, x, y, xx, xy, yy = sums
     mx, my = x / n, y / n
     cxx, cxy, cyy = xx / n - mx * mx, xy / n - mx * my, yy / n - my * my
     middle, half = (cxx + cyy) / 2, math.hypot((cxx - cyy) / 2, cxy)
