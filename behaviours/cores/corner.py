@@ -22,6 +22,8 @@ from behaviours.interface import Floats, Vec2
 
 HALF_A_TURN = math.pi
 SHRINK = 0.85
+BACK = math.radians(110)
+"""From so much of a turn on, the robot would go back."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,17 +115,20 @@ def room(points: Floats, stand_off: float, beside: float, least: float) -> float
 def barred(points: Floats, radius: float, reach: float, least: float) -> tuple[float, Vec2 | None]:
     """How far [rad] to turn left until a disc gets on for reach [m], and what it touches on its right then.
 
-    A disc that fits nowhere is made smaller, at the smallest `least` [m]; half a turn where that fits nowhere, too.
+    A disc that would have to turn back is made smaller, at the smallest `least` [m], lest a narrow way be taken for a
+    dead end; where that has to turn back, too, the largest disc that fits anywhere counts.
     """
     distance = np.hypot(points[:, 0], points[:, 1])
     bearing = np.arctan2(points[:, 1], points[:, 0])
+    back: tuple[float, Vec2 | None] | None = None
     while True:
         turn, touched = _swept(distance, bearing, radius, reach)
         at = None if touched is None else (float(points[touched, 0]), float(points[touched, 1]))
-        if turn < math.tau:
+        if turn <= BACK:
             return turn, at
+        back = (turn, at) if back is None and turn < math.tau else back
         if radius <= least:
-            return HALF_A_TURN, at
+            return (HALF_A_TURN, at) if back is None else back
         radius = max(least, radius * SHRINK)
 
 
