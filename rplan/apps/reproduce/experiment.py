@@ -56,7 +56,7 @@ def batches(asked: Sequence[Asked], seeds: int) -> list[Batch]:
     """All episodes, plan by plan. Raises InputError, GridError, ScenarioError, PlanError."""
     by_plan: dict[str, list[tuple[Asked, Case]]] = {}
     for one in asked:
-        for case in one.row.cases(seeds):
+        for case in one.row.cases_with(one.preset, seeds):
             by_plan.setdefault(case.plan, []).append((one, case))
     return [_batch(plan, cases) for plan, cases in by_plan.items()]
 

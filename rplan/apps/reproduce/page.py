@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 TITLES: Mapping[str, str] = {
     "find-and-fetch": "Find and fetch (Bonasso, Antonisse and Slack 1992)",
+    "wall-following": "Wall following (Bayer 2012)",
     "wayfarer": "Perimeter reconnaissance (Yamauchi 2005)",
 }
 MARKS = {"met": "met", "close": "**close**", "missed": "**missed**"}
@@ -189,6 +190,7 @@ def _draw(result: Result, folder: Path) -> Iterator[tuple[Path, str]]:
         picture(Shown(result.asked, case), finding.seed, path)
         yield path, f"{result.asked.row.name}, {case.name}, seed {finding.seed}: one run from above"
         yield from _maps(Shown(result.asked, case), finding.seed, folder / f"{_key(result)}-maps.png")
+    yield from _draw_courses(result, folder)
     plots = [plot for plot in result.asked.row.plots if numbers(result.measures, plot.key)]
     if plots:
         path = folder / f"{_key(result)}-spread.png"
@@ -201,6 +203,23 @@ def _maps(shown: Shown, seed: int, path: Path) -> Iterator[tuple[Path, str]]:
         draw_maps(shown, seed, path)
         words = "; ".join(one.words for one in shown.asked.row.maps)
         yield path, f"{shown.asked.row.name}, {shown.case.name}, seed {seed}: {words}"
+
+
+def _draw_courses(result: Result, folder: Path) -> Iterator[tuple[Path, str]]:
+    """The runs that the row draws in its own way."""
+    row = result.asked.row
+    for case in result.cases:
+        if row.draw is None or case.name not in row.courses:
+            continue
+        title = f"{row.name}, {case.name}, seed {case.seeds[0]}"
+        path = folder / f"{_key(result)}-{_word(case.name)}.png"
+        row.draw(seen(Shown(result.asked, case), case.seeds[0]), title, path)
+        yield path, title
+
+
+def _word(name: str) -> str:
+    """A name as part of the name of a file."""
+    return "-".join("".join(letter if letter.isalnum() else " " for letter in name.lower()).split())
 
 
 def _shown(result: Result) -> tuple[Case, Finding] | None:

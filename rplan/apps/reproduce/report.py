@@ -39,7 +39,7 @@ def _result(one: Asked, measures: Sequence[Measures], seeds: int) -> Result:
     mine = [m for m in measures if (m.get("row"), m.get(PRESET)) == (one.row.name, one.preset)]
     ran = tuple(m for m in mine if m.get("error") is None)
     failed = tuple(m for m in mine if m.get("error") is not None)
-    cases = one.row.cases(seeds)
+    cases = one.row.cases_with(one.preset, seeds)
     return Result(one, cases, ran, failed, one.row.judge(one.preset, ran))
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 from behaviours.interface import Command, Pose, Reading, Report, View
@@ -28,7 +29,7 @@ class Case:
     """Episodes of one kind. plan, scenario: below plans/; seeds: one episode each.
 
     settings: keys of the scenario with other values, as YAML (`things[0].speed`, `1.2`). changes: of parameters of the
-    plan's libraries.
+    plan's libraries. presets: with which it is run.
     """
 
     name: str
@@ -37,6 +38,7 @@ class Case:
     seeds: tuple[int, ...]
     settings: tuple[tuple[str, str], ...] = ()
     changes: tuple[Change, ...] = ()
+    presets: tuple[Preset, ...] = PRESETS
 
     @property
     def is_plain(self) -> bool:
@@ -111,6 +113,7 @@ class Row:
     cases: for a number of seeds; none where nothing is driven. measure: of one episode. judge: of all
     episodes of one preset that ran. plots: of measures, over all cases. note: what agreement is worth.
     modern: what else the preset modern changes in the plan. picture: the case that pages draw, "": the first figure's.
+    courses: cases of which pages also draw one run each, by `draw`: the run, its title, the file.
     maps: those that pages show side by side of the run they draw; the plan uses the library `mapping`.
     """
 
@@ -128,3 +131,9 @@ class Row:
     modern: tuple[Change, ...] = ()
     picture: str = ""
     maps: tuple[Drawn, ...] = ()
+    courses: tuple[str, ...] = ()
+    draw: Callable[[Seen, str, Path], None] | None = None
+
+    def cases_with(self, preset: Preset, seeds: int) -> tuple[Case, ...]:
+        """Those that are run with a preset."""
+        return tuple(case for case in self.cases(seeds) if preset in case.presets)

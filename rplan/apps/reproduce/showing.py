@@ -17,7 +17,8 @@ from PIL import Image
 from rplan.apps.drawing import map as maps
 from rplan.apps.files import InputError
 from rplan.apps.reproduce.experiment import Asked, plan_at, scenario_at, variant_of
-from rplan.apps.reproduce.row import Case
+from rplan.apps.reproduce.row import Case, Seen
+from rplan.apps.reproduce.watch import watch
 from rplan.apps.simulation import Run, World, load_world, simulate
 from rplan.apps.sweep.work import changed
 from rplan.apps.viewer.page import write_page
@@ -40,7 +41,7 @@ class Shown:
 
 def find(asked: Asked, seeds: int, name: str | None) -> Shown:
     """The case of this name, without one the first. Raises InputError."""
-    cases = asked.row.cases(seeds)
+    cases = asked.row.cases_with(asked.preset, seeds)
     if not cases:
         raise InputError(f"{asked.row.name} drives nothing: there is nothing to replay")
     if name is None:
@@ -73,6 +74,14 @@ def in_words(run: Run) -> str:
     verdict = run.verdict
     minutes = f"{int(verdict.duration // 60)} min {verdict.duration % 60:04.1f} s"
     return f"done in {minutes}" if verdict.done else f"not done: {verdict.reason}"
+
+
+def seen(shown: Shown, seed: int) -> Seen:
+    """The episode, tick by tick. Raises GridError, ScenarioError."""
+    file = plan_at(shown.case.plan)
+    compiled = compile_file(file)
+    variant = variant_of(shown.asked, shown.case, load_world(scenario_at(shown.case.scenario, file)), compiled)
+    return watch(changed(compiled, variant.changes), loads(variant.text, variant.file), seed)
 
 
 def replay(shown: Shown, seed: int | None, file: Path) -> str:
