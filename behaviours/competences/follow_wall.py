@@ -17,7 +17,7 @@ import numpy as np
 from behaviours.cores.hull_paths import Hull, Motors, least_distance, paths
 from behaviours.cores.wall_law import turn_rate
 from behaviours.estimators.fitted_wall import FittedWall
-from behaviours.estimators.wall_and_corners import WallAndCorners
+from behaviours.estimators.wall_and_corners import STEEPEST, WallAndCorners
 from behaviours.interface import STOP, Channels, Command, Drive, Reading, Report
 
 
@@ -30,15 +30,12 @@ class PaceSettings:
 
 @dataclass(frozen=True, slots=True)
 class ClearSettings:
-    """All chosen here. hull_radius, margin [m]: kept between the hull and what is seen; steepest: the share of the turn
-    along the wall that its distance may ask for, so that the robot never turns back on its way to it; away [1/s]: turn
-    rate per turn; on_the_spot [rad]: a greater turn is made standing; roomy [m]: full speed with so much room; tight:
+    """All chosen here. hull_radius, margin [m]: kept between the hull and what is seen; away [1/s]: turn rate per turn; on_the_spot [rad]: a greater turn is made standing; roomy [m]: full speed with so much room; tight:
     share of it with none.
     """
 
     hull_radius: float = 0.25
     margin: float = 0.06
-    steepest: float = 0.8
     away: float = 2.5
     on_the_spot: float = math.radians(60.0)
     roomy: float = 0.35
@@ -105,13 +102,15 @@ class FollowWallClear:
         """By the law, or past what bars the way, whichever leads more to the left."""
         wall, clear = self._wall, self._clear
         law = replace(wall.settings.law, stand_off=wall.stand_off)
-        most = clear.steepest * law.gain / law.offset_gain
+        most = STEEPEST * law.gain / law.offset_gain
         offset = wall.stand_off + max(-most, min(most, offset - wall.stand_off))
         pace = self._pace.speed * self._share()
         along = turn_rate(offset, angle, curvature, max(pace, self._pace.speed / 2), law)
-        past = min(law.most, clear.away * wall.turn)
-        speed = pace * max(0.0, math.cos(wall.turn)) if wall.turn < clear.on_the_spot else 0.0
-        return Drive(speed, max(along, past) if wall.turn > 0.0 else along)
+        aside = abs(wall.direction)
+        past = max(-law.most, min(law.most, clear.away * wall.direction))
+        if aside > clear.on_the_spot:
+            return Drive(0.0, past)
+        return Drive(pace * math.cos(aside), along if wall.mode == "wall" and wall.turn == 0.0 else past)
 
     def _share(self) -> float:
         """Of the speed, by the room ahead."""

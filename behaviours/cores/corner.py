@@ -22,8 +22,8 @@ from behaviours.interface import Floats, Vec2
 
 HALF_A_TURN = math.pi
 SHRINK = 0.85
-BACK = math.radians(110)
-"""From so much of a turn on, the robot would go back."""
+BACK = math.radians(60)
+"""Before a disc turns the robot by more, smaller ones are tried."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,8 +31,8 @@ class CornerSettings:
     """All chosen here; lengths [m], angles [rad].
 
     door: where the wall goes on behind an opening no wider, the opening is passed by; abreast: a pivot begins when the
-    end of the wall is so near ahead; turned: a wall is followed when the heading is turned no more against it; leads:
-    it must go on so far ahead; on: a place so near to a line lies on it; leap: the place of contact moves by no more
+    end of the wall is so near ahead; turned: a wall is followed when the heading is turned no more against it; leads, long, broken:
+    it must go on so far ahead, be so long, and have no wider gaps; on: a place so near to a line lies on it; leap: the place of contact moves by no more
     from scan to scan; disc: radius of the disc that is swept, as a share of the stand-off; sweep: how far it is swept,
     too; barred: from so much of a turn on what is ahead is followed; beside: what stands so little ahead of the robot
     or behind it bounds the room.
@@ -42,6 +42,8 @@ class CornerSettings:
     abreast: float = 0.05
     turned: float = math.radians(50)
     leads: float = 0.3
+    long: float = 0.4
+    broken: float = 0.2
     on: float = 0.15
     leap: float = 0.4
     disc: float = 0.85
@@ -81,12 +83,23 @@ def beyond(
     found = acquire(points[near], fit, chance, corner.turned)
     if found is None or abs(float(found.line.off(np.array([contact]))[0])) > corner.on:
         return None
-    stations = found.line.stations(points[near][found.inliers])
-    if float(stations.max()) < corner.leads:
+    low, high, count = _run(found, points[near], contact, corner.broken)
+    if high < corner.leads or high - low < corner.long or count < fit.least:
         return None
     inliers = np.zeros(len(points), dtype=np.bool_)
     inliers[np.flatnonzero(near)[found.inliers]] = True
     return Fit(found.line, inliers, found.residual)
+
+
+def _run(fit: Fit, points: Floats, at: Vec2, broken: float) -> tuple[float, float, int]:
+    """From where to where [m] the part of a wall reaches to which a place belongs, and how many points it has."""
+    stations = np.sort(fit.line.stations(points[fit.inliers]))
+    breaks = np.flatnonzero(np.diff(stations) > broken)
+    middle = int(np.abs(stations - float(fit.line.stations(np.array([at]))[0])).argmin())
+    after = int(np.searchsorted(breaks, middle))
+    first = int(breaks[after - 1]) + 1 if after > 0 else 0
+    last = int(breaks[after]) if after < len(breaks) else len(stations) - 1
+    return float(stations[first]), float(stations[last]), last - first + 1
 
 
 def anchored(points: Floats, contact: Vec2, leap: float) -> Vec2 | None:
@@ -112,19 +125,19 @@ def room(points: Floats, stand_off: float, beside: float, least: float) -> float
     return max(least, min(stand_off, float(left.min() - right.max()) / 2))
 
 
-def barred(points: Floats, radius: float, reach: float, least: float) -> tuple[float, Vec2 | None]:
-    """How far [rad] to turn left until a disc gets on for reach [m], and what it touches on its right then.
+def barred(points: Floats, wanted: float, radius: float, reach: float, least: float) -> tuple[float, Vec2 | None]:
+    """How far [rad] to the left of the wanted direction a disc gets on for reach [m], and what is to its right then.
 
-    A disc that would have to turn back is made smaller, at the smallest `least` [m], lest a narrow way be taken for a
-    dead end; where that has to turn back, too, the largest disc that fits anywhere counts.
+    A disc that would turn the robot far is made smaller, at the smallest `least` [m], lest a narrow way be taken for a
+    dead end; where that has to turn far, too, the largest disc that fits anywhere counts.
     """
     distance = np.hypot(points[:, 0], points[:, 1])
-    bearing = np.arctan2(points[:, 1], points[:, 0])
+    bearing = np.remainder(np.arctan2(points[:, 1], points[:, 0]) - wanted + math.pi, math.tau) - math.pi
     back: tuple[float, Vec2 | None] | None = None
     while True:
         turn, touched = _swept(distance, bearing, radius, reach)
         at = None if touched is None else (float(points[touched, 0]), float(points[touched, 1]))
-        if turn <= BACK:
+        if wanted + turn <= BACK:
             return turn, at
         back = (turn, at) if back is None and turn < math.tau else back
         if radius <= least:

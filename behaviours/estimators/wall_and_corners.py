@@ -29,6 +29,9 @@ TOLD = 0.1
 """A scan of which a smaller share says anything is none."""
 INSIDE = 0.05
 """[m] What lies so far within the hull is a mistake of the sensor."""
+STEEPEST = 0.8
+"""Sine of the steepest angle at which a wall that is far is approached."""
+MOST = math.radians(120)
 BESIDE = (math.radians(-170), math.radians(60))
 """Between these bearings lies what a lost wall may be found on again."""
 
@@ -47,15 +50,14 @@ class WallAndCorners(FittedWall):
     """mode: also "corner" before what bars the way, and "search" for a wall that is out of sight.
 
     around: (n, 2) [m] what stands round the robot, with the wall to the right; turn [rad]: to the left, to get past
-    what is ahead.
+    what is ahead; direction [rad]: where to go then.
     """
 
     def __init__(self, settings: FittedWallSettings, around: AroundSettings) -> None:
         super().__init__(settings)
         self._here = around
         self.around: Floats = np.zeros((0, 2))
-        self.turn = 0.0
-        self._touched: Vec2 | None = None
+        self.turn = self.direction = 0.0
         self.stand_off = settings.law.stand_off
         self._contact: Vec2 = (0.0, 0.0)
         self._spacing = 0.01
@@ -104,8 +106,11 @@ class WallAndCorners(FittedWall):
             self.around = np.zeros((0, 2))
             self._show(None)
             return
-        self._measure()
+        here = self._here
+        least = here.hull_radius + here.margin
+        self.stand_off = corner.room(points, self.settings.law.stand_off, here.corner.beside, least)
         self._look(points)
+        self._bar(least)
 
     def _tells(self, scan: Scan, points: Floats) -> bool:
         """Whether enough of the beams say something that can be."""
@@ -113,14 +118,31 @@ class WallAndCorners(FittedWall):
         within = np.count_nonzero(np.hypot(points[:, 0], points[:, 1]) < self._here.hull_radius - INSIDE)
         return bool(says - within >= max(1.0, TOLD * len(scan.ranges)))
 
-    def _measure(self) -> None:
-        """How much room there is, and how far to turn."""
-        here, law = self._here, self.settings.law
-        least = here.hull_radius + here.margin
-        self.stand_off = corner.room(self.around, law.stand_off, here.corner.beside, least)
-        radius = max(least, here.corner.disc * self.stand_off)
-        reach = here.corner.sweep * self.stand_off
-        self.turn, self._touched = corner.barred(self.around, radius, reach, least)
+    def _bar(self, least: float) -> None:
+        """Where to go past what bars the way; it is turned about if that is far aside."""
+        here = self._here.corner
+        rolls = self.mode in ("end", "corner")
+        radius, reach = max(least, self.stand_off * (1.0 if rolls else here.disc)), here.sweep * self.stand_off
+        wanted = math.atan2(self._contact[1], self._contact[0]) if rolls else self._aim(reach)
+        self.turn, touched = corner.barred(self.around, wanted, radius, reach, least)
+        self.direction = wanted + self.turn
+        if not self.is_found:
+            return
+        self._seen_at = self._stamp
+        if touched is not None and (rolls or self.turn > here.barred):
+            self._pivot_about(touched, "corner" if self.direction > here.barred else "end")
+        if rolls:
+            self.direction += max(0.0, self.stand_off - math.hypot(*self._contact))
+
+    def _aim(self, reach: float) -> float:
+        """The direction in which the law would come to an equilibrium."""
+        target, law = self.target(), self.settings.law
+        if target is None:
+            return 0.0
+        if self.mode == "search":
+            return -reach / 2 / self.stand_off
+        steep = max(-STEEPEST, min(STEEPEST, law.offset_gain / law.gain * (target[0] - self.stand_off)))
+        return max(-MOST, min(MOST, wrap(-math.asin(steep) - target[1])))
 
     def _look(self, points: Floats) -> None:
         match self.mode:
@@ -130,10 +152,6 @@ class WallAndCorners(FittedWall):
                 self._turn_about(points)
             case "none" | "search" | "lost":
                 self._seek(points)
-        if self.is_found:
-            self._seen_at = self._stamp
-            if self.turn > self._here.corner.barred and self._touched is not None:
-                self._pivot_about(self._touched, "corner")
 
     def _pivot_about(self, at: Vec2, mode: str) -> None:
         self.mode, self.state, self.end = ("end" if mode == "end" else "corner"), None, None

@@ -61,7 +61,7 @@ class WallOfLines:
         here, stand_off = self.settings, self._walls.settings.follow.stand_off
         least = here.hull_radius + here.margin
         radius = max(least, here.corner.disc * corner.room(points, stand_off, here.corner.beside, least))
-        turn, _ = corner.barred(points, radius, here.corner.sweep * stand_off, least)
+        turn, _ = corner.barred(points, 0.0, radius, here.corner.sweep * stand_off, least)
         self.bars = turn > here.corner.barred
         if seen is None:
             self._miss(reading.stamp)
