@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from rplan.apps.reproduce.figures import case_of, numbers, spread
 from rplan.apps.reproduce.report import Result, preset_of, see
 from rplan.apps.reproduce.row import Case, Finding, Measures, Plot
-from rplan.apps.reproduce.showing import Shown, draw_maps, picture
+from rplan.apps.reproduce.showing import Shown, draw_maps, picture, seen
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
