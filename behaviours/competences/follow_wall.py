@@ -30,7 +30,8 @@ class PaceSettings:
 
 @dataclass(frozen=True, slots=True)
 class ClearSettings:
-    """All chosen here. hull_radius, margin [m]: kept between the hull and what is seen; away [1/s]: turn rate per turn; on_the_spot [rad]: a greater turn is made standing; roomy [m]: full speed with so much room; tight:
+    """All chosen here. hull_radius, margin [m]: kept between the hull and what is seen; away [1/s]: turn rate
+    per turn; on_the_spot [rad]: a greater turn is made standing; roomy [m]: full speed with so much room; tight:
     share of it with none.
     """
 
