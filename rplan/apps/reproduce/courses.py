@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 
 FOLLOW = "follow-wall"
 BLUE, RED, GREEN, GREY = "#3478e5", "#c03a2b", "#16876f", "#9aa3af"
-SNAPSHOTS = 5
+SNAPSHOTS, SPIKE = 5, 1.0
+BEFORE, AFTER = 3.0, 4.0  # [s]
 
 
 def draw_course(seen: Seen, title: str, path: Path) -> None:
@@ -93,11 +94,12 @@ def _number(told: Mapping[str, object], key: str) -> float:
 
 
 def _snapshots(moments: Sequence[Moment]) -> list[Moment]:
-    """From before points were invented until after, otherwise from the whole run."""
+    """Round the spike of the curvature where there is one, otherwise from the whole run."""
     shown = [moment for moment in moments if "wall-points" in moment.shown and moment.reading.lidar is not None]
-    invented = [moment.time for moment in shown if _places(moment.shown.get("invented-points"))]
-    if invented:
-        shown = [moment for moment in shown if invented[0] - 1.5 <= moment.time <= invented[0] + 6.0]
+    bends = [(abs(_number(told, "curvature")), m.time) for m in shown if "curvature" in (told := described(m, FOLLOW))]
+    most, spike = max(bends, default=(0.0, 0.0))
+    if most >= SPIKE:
+        shown = [moment for moment in shown if spike - BEFORE <= moment.time <= spike + AFTER]
     if len(shown) <= SNAPSHOTS:
         return shown
     return [shown[round(k * (len(shown) - 1) / (SNAPSHOTS - 1))] for k in range(SNAPSHOTS)]
