@@ -112,9 +112,8 @@ def test_twenty_are():
 
 @pytest.mark.parametrize("points", [np.ones((50, 2)), np.zeros((50, 2)), np.full((50, 2), 1e-9)])
 def test_points_in_one_place_are_no_wall(points):
-    x, y = points[0]
     assert acquire(points, FIT, np.random.default_rng(0)) is None
-    assert track(points, Line(0.0, float(x)), FIT) is None
+    assert track(points, Line(0.0, float(points[0, 0])), FIT) is None
 
 
 def test_a_ring_round_the_robot_is_no_wall():

@@ -56,7 +56,7 @@ def test_an_angle_is_compared_the_short_way_round():
 
 
 def test_it_is_as_sure_as_it_should_be():
-    """The squared error, weighed by the covariance, is 2 in the mean where noise and drift are what it takes them for."""
+    """The squared error by the covariance is 2 in the mean where noise and drift are what it takes them for."""
     chance, weighed = np.random.default_rng(11), []
     for _ in range(40):
         y, theta = 1.0, 0.0
