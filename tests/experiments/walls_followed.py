@@ -137,7 +137,8 @@ def hour(name: str, world: Scenario, compiled: Compiled, minutes: float, seed: i
     share = 100.0 * float((wall & seen).sum()) / max(1, int(wall.sum()))
     return (
         f"{name:18} contacts {len(verdict.contacts)}  {verdict.distance:6.0f} m  "
-        f"clearance {verdict.smallest_clearance:.2f} m  wall seen {share:3.0f} %  {verdict.duration / took:.0f} x real time"
+        f"clearance {verdict.smallest_clearance:.2f} m  "
+        f"wall seen {share:3.0f} %  {verdict.duration / took:.0f} x real time"
     )
 
 
