@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 FOLLOW = "follow-wall"
 BLUE, RED, GREEN, GREY = "#3478e5", "#c03a2b", "#16876f", "#9aa3af"
 SNAPSHOTS, SPIKE = 5, 1.0
-BEFORE, AFTER = 3.0, 4.0  # [s]
+BEFORE, AFTER, A_LITTLE = 3.0, 4.0, 0.3  # [s]
 
 
 def draw_course(seen: Seen, title: str, path: Path) -> None:
@@ -94,8 +94,9 @@ def _number(told: Mapping[str, object], key: str) -> float:
 
 
 def _snapshots(moments: Sequence[Moment]) -> list[Moment]:
-    """Round the spike of the curvature where there is one, otherwise from the whole run."""
-    shown = [moment for moment in moments if "wall-points" in moment.shown and moment.reading.lidar is not None]
+    """Round the spike of the curvature where there is one, otherwise from as long as a wall was followed."""
+    followed = [moment.time for moment in moments if "offset" in described(moment, FOLLOW)]
+    shown = [m for m in moments if "wall-points" in m.shown and followed and m.time <= followed[-1] + A_LITTLE]
     bends = [(abs(_number(told, "curvature")), m.time) for m in shown if "curvature" in (told := described(m, FOLLOW))]
     most, spike = max(bends, default=(0.0, 0.0))
     if most >= SPIKE:
@@ -112,9 +113,9 @@ def _places(view: View | None) -> list[tuple[float, ...]]:
 
 def _cloud(axes: Axes, moment: Moment) -> None:
     """The robot in the middle, heading up."""
-    assert moment.reading.lidar is not None
-    points = scan_points(moment.reading.lidar)
-    axes.plot(-points[:, 1], points[:, 0], ".", color=GREY, ms=1.5)
+    if moment.reading.lidar is not None:
+        points = scan_points(moment.reading.lidar)
+        axes.plot(-points[:, 1], points[:, 0], ".", color=GREY, ms=1.5)
     for name, mark, colour, size in (("wall-points", ".", RED, 2.5), ("invented-points", "x", BLUE, 8.0)):
         places = _places(moment.shown.get(name))
         axes.plot([-place[1] for place in places], [place[0] for place in places], mark, color=colour, ms=size)
