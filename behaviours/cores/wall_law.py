@@ -5,7 +5,8 @@ come from.
 
 Equation (2) of Bayer 2012 has four opening and three closing parentheses. Of the repairs by one character only
 omega = v (-k sin(theta) - (y - T) + K) is stable: with y' = v sin(theta), V = (1 - cos(theta)) + (y - T)^2 / 2 has
-V' = -k v sin(theta)^2 <= 0. With a gain on the offset V is (1 - cos(theta)) + offset_gain (y - T)^2 / 2.
+V' = -k v sin(theta)^2 <= 0. With a gain on the offset V is (1 - cos(theta)) + offset_gain (y - T)^2 / 2. Where the
+limit cuts the turn rate that says nothing.
 
 Equation (3) sums a from -0.3 N to N / 2. Terms of a and -a cancel each other and a = 0 is 0 / 0, so that what is
 printed is the sum beyond 0.3 N. It is a difference of slopes and no curvature; `per_metre` makes one of it.

@@ -35,7 +35,7 @@ def moment(time: float, pose: Pose, told: Mapping[str, object] | None = None, **
 def seen(moments: Sequence[Moment], *, done: bool = True, contacts: tuple[Touch, ...] = (), clear: float = 0.5) -> Seen:
     end = moments[-1].time if moments else 0.0
     times = Times(arrival=end if done else None)
-    return Seen(Verdict("goal", done, "", "done", times, end, 1.0, contacts, clear), 0.028, moments)
+    return Seen(Verdict("reach", done, "", "done", times, end, 1.0, contacts, clear), 0.028, moments)
 
 
 def told(findings: Sequence[Finding]) -> list[tuple[str, str]]:
