@@ -122,7 +122,7 @@ class WallAndCorners(FittedWall):
         """Where to go past what bars the way; it is turned about if that is far aside."""
         here = self._here.corner
         rolls = self.mode in ("end", "corner")
-        radius, reach = max(least, self.stand_off * (1.0 if rolls else here.disc)), here.sweep * self.stand_off
+        radius, reach = max(least, here.disc * self.stand_off), here.sweep * self.stand_off
         wanted = math.atan2(self._contact[1], self._contact[0]) if rolls else self._aim(reach)
         self.turn, touched = corner.barred(self.around, wanted, radius, reach, least)
         self.direction = wanted + self.turn
@@ -132,7 +132,7 @@ class WallAndCorners(FittedWall):
         if touched is not None and (rolls or self.turn > here.barred):
             self._pivot_about(touched, "corner" if self.direction > here.barred else "end")
         if rolls:
-            self.direction += max(0.0, self.stand_off - math.hypot(*self._contact))
+            self.direction += max(0.0, radius - math.hypot(*self._contact))
 
     def _aim(self, reach: float) -> float:
         """The direction in which the law would come to an equilibrium."""
