@@ -97,7 +97,15 @@ def settled(name: str, offset: float | None = 0.01, contacts: int = 0) -> Measur
     ],
 )
 def test_every_run_must_end_within_2_cm_and_1_degree(some: list[Measures], judgement: str) -> None:
-    assert told(y1.judge("paper", some)) == [(f"start at {y1.NARROW}", judgement)]
+    assert told(y1.judge("modern", some)) == [(f"start at {y1.NARROW}", judgement)]
+
+
+def test_the_paper_s_three_starts_must_overshoot_each() -> None:
+    every = [settled(name) for name in y1.PRINTED]
+    assert told(y1.judge("paper", every))[-1] == ("overshoot of the target", "met")
+    short = [{**settled(y1.NARROW), "overshoot": 0.0}, *every[1:]]
+    assert y1.judge("paper", short)[-1].because == y1.OVERDAMPED
+    assert y1.judge("paper", short)[-1].case == y1.NARROW
 
 
 def test_the_narrow_start_has_a_small_hull_and_tuned_is_run_with_the_paper_s_only() -> None:

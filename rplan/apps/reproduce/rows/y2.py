@@ -96,7 +96,7 @@ def _kind(kind: str, some: Sequence[Measures]) -> Finding:
         case "fit alone, band of 10 cm":
             judgement, printed, why = "met", "not printed", ""
         case _:
-            judgement, printed, why = judged_share(went, len(some), 1.0), "not printed: all", HELD
+            judgement, printed, why = judged_share(went, len(some), 1.0), "not in the paper; all are wanted", HELD
     odd = kind.endswith("off")
     shown = next((one for one in some if bool(one.get("round")) is odd), some[0])
     because = "" if judgement == "met" else why
