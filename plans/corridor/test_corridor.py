@@ -1,0 +1,66 @@
+"""The corridor is followed from end to end and back by either wall follower; the `use` line alone is another."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from rplan.apps.wiring import PlanBrain, compile_file, compile_source
+from rplan.driver import Compiled
+from rplan.lang.source import Source
+from sim.episode import Episode
+from sim.judge import Verdict
+from sim.scenarios.format import load
+
+HERE = Path(__file__).parent
+WORLD = load(HERE / "corridor.yaml")
+USED = "wall-by-ransac"
+
+
+def swapped() -> Compiled:
+    """The plan with the other library in its `use` line."""
+    text = (HERE / "corridor.rplan").read_text(encoding="utf-8")
+    line = f"(use {USED} "
+    assert text.count(line) == 1
+    return compile_source(Source("corridor.rplan", text.replace(line, "(use wall-by-hough ")))
+
+
+class Ends:
+    """When the robot was in the dead end in the north, in the one in the west, and back at the start."""
+
+    PLACES = ((14.0, 12.0), (9.3, 9.0), (0.5, 0.0))
+
+    def __init__(self) -> None:
+        self.reached: list[float] = []
+
+    def observe(self, episode: Episode) -> None:
+        pose, count = episode.world.robot.pose, len(self.reached)
+        if count < len(self.PLACES) and math.dist((pose.x, pose.y), self.PLACES[count]) < 1.2:
+            self.reached.append(episode.time)
+
+
+def run(plan: Compiled, seconds: float, seed: int = 0) -> tuple[Verdict, list[float]]:
+    ends = Ends()
+    return Episode(WORLD, seed, plan.goals.period).run(PlanBrain(plan), seconds, ends), ends.reached
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_it_goes_to_both_dead_ends_and_back_without_a_touch(seed):
+    verdict, reached = run(compile_file(HERE / "corridor.rplan"), 230, seed)
+    assert not verdict.contacts and len(reached) == 3
+    assert verdict.smallest_clearance > 0.15
+
+
+def test_the_other_follower_goes_the_same_way_at_the_same_pace():
+    verdict, reached = run(swapped(), 100)
+    assert not verdict.contacts and len(reached) >= 2
+    _, by_ransac = run(compile_file(HERE / "corridor.rplan"), 100)
+    assert reached[:2] == pytest.approx(by_ransac[:2], rel=0.2)
+
+
+def test_plan_and_swapped_plan_decide_alike():
+    one, other = compile_file(HERE / "corridor.rplan"), swapped()
+    assert one.diagnostics == other.diagnostics == ()
+    assert [term.name for term in one.goals.percepts()] == [term.name for term in other.goals.percepts()]
