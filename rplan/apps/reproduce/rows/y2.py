@@ -125,7 +125,8 @@ ROW = Row(
         "from 24 in a sketch of the system; it and the wider band tell how much the result hangs on them. Invented "
         "points end the cluster of equation (3); once the ray through the end of the wall leads back, its terms say "
         "nothing about a slope and are left out. Put in front of the end instead, they turn the robot until it has "
-        "lost both walls."
+        "lost both walls. This, the band and what *off* means were settled after looking at runs with two of the four "
+        "seeds: with the curvature of the points that are seen, and wall loss off, 2 of 12 came round."
     ),
     cases=cases,
     measure=measure,
