@@ -7,8 +7,12 @@ from functools import cache
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from behaviours.catalogue import LIBRARIES
+from behaviours.cores.hull_paths import Hull, Motors, least_distance, paths
+from behaviours.estimators.fitted_wall import FittedWall
 from behaviours.interface import Command, Drive, Odometry, Pose, Reading, Scan, Workshop
 from rplan.apps.wiring import PlanBrain, compile_source
 from rplan.driver import Compiled
@@ -206,6 +210,23 @@ def test_nothing_is_driven_into_whatever_appears():
     ranges = np.minimum(beside(-1.0), np.where(np.abs(BEARINGS) < 1.2, 0.36 / np.maximum(np.cos(BEARINGS), 0.3), 4.0))
     command = follower.give(ranges).drive
     assert command is not None and command.speed < 0.05 and command.turn_rate > 0
+
+
+@settings(max_examples=80, deadline=None, derandomize=True)
+@given(st.integers(0, 10_000), st.floats(0.3, 0.8), st.floats(-1.5, 1.5))
+def test_whatever_is_wanted_the_hull_stays_free_until_the_robot_could_stand(seed, speed, turn_rate):
+    """Where nothing lies within the margin, no command brings the hull nearer than the margin."""
+    follower = Follower()
+    follower.give(beside(-1.0))
+    wall = follower.workshop.share(FittedWall, list)
+    chance = np.random.default_rng(seed)
+    points = chance.uniform(-1, 1, (40, 2))
+    wall.around = points[np.hypot(points[:, 0], points[:, 1]) > 0.32]
+    wall.turn = wall.direction = 0.0
+    reading = Reading(1.0, 1, Odometry(Pose(0.0, 0.0), speed, turn_rate))
+    drive = follower.offer.competences["follow-wall"].step(reading, {})[0].drive
+    made = paths(Drive(speed, turn_rate), np.array([[drive.speed, drive.turn_rate]]), Motors(2.0, 8.0, 0.1, 0.1))
+    assert drive.speed == 0.0 or least_distance(made, wall.around, Hull(radius=0.25))[0] >= 0.05
 
 
 def test_parameters_that_make_no_sense_are_refused():
