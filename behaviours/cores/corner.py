@@ -33,7 +33,7 @@ class CornerSettings:
     door: where the wall goes on behind an opening no wider, the opening is passed by; abreast: a pivot begins when the
     end of the wall is so near ahead; turned: a wall is followed when the heading is turned no more against it; leads,
     long, broken: it must go on so far ahead, be so long, and have no wider gaps; on: a place so near to a line lies on
-    it; leap: the place of contact moves by no more from scan to scan; disc: radius of the disc that is swept, as a share
+    it; leap: the place of contact moves by no more from scan to scan; disc: radius of the disc that is swept, a share
     of the stand-off; sweep: how far it is swept, too; barred: from so much of a turn on what is ahead is followed;
     beside: what stands so little ahead of the robot or behind it bounds the room.
     """
