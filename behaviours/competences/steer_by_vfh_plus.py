@@ -25,6 +25,8 @@ from behaviours.estimators.surroundings import moved
 from behaviours.interface import STOP, Channels, Command, Drive, Floats, Pose, Reading, Report, View, wrap
 
 MAP = Pose(0.0, 0.0, 0.0)
+SQUEEZE = 0.35
+"""Share of cruise out of where the hull cannot turn."""
 BACKWARDS = (0.5, 0.25, 0.12)
 """Shares of cruise at which the way back is tried."""
 
@@ -57,7 +59,7 @@ class SteerByVfhPlus:
     def _begin(self) -> None:
         self._vfh = VfhPlus(self.settings.choice, self.settings.left)
         self._way = WayBack(self.settings.way_back)
-        self._turning = -math.inf
+        self._out: float | None = None
         self._shown: View | None = None
 
     def start(self, reading: Reading, channels: Channels) -> None:
@@ -91,6 +93,8 @@ class SteerByVfhPlus:
         self._way.advance(pose, stamp)
         choice = self._choose(heading, now, keep_off)
         direction = choice.direction
+        if self._out is not None:
+            return self._command(self._straight_out(now)), Report(details={"doing": "straight out"})
         if self._way.is_stalled(stamp):
             self._way.turn_back(pose, pose.theta if direction is None else direction, stamp)
         if direction is None:
@@ -112,9 +116,27 @@ class SteerByVfhPlus:
         """Nothing is open: turn where that shows something new and the hull is free, else go back."""
         pilot = self.settings.pilot
         if self._near.sees_all or not may_turn(self._near.points, pilot):
-            self._way.turn_back(self._place.pose, self._place.heading, stamp)
-            return None
+            if self._way.is_known:
+                self._way.turn_back(self._place.pose, self._place.heading, stamp)
+                return None
+            self._out = self._roomiest()
+            return self._straight_out(now)
         return Drive(0.0, pilot.max_turn_rate / 2 if self.settings.left else -pilot.max_turn_rate / 2)
+
+    def _roomiest(self) -> float:
+        """1 for straight ahead or -1 for straight back, where the hull may go further."""
+        points, half = self._near.points, self.settings.pilot.hull.half_width
+        lane = points[np.abs(points[:, 1]) < half, 0]
+        ahead, behind = lane[lane > 0.0].min(initial=math.inf), -lane[lane < 0.0].max(initial=-math.inf)
+        return 1.0 if ahead > behind or not self._near.sees_all else -1.0
+
+    def _straight_out(self, now: Drive) -> Drive | None:
+        """Slowly on in the direction begun, until the hull may turn or must stop."""
+        pilot = self.settings.pilot
+        out = Drive((self._out or 0.0) * SQUEEZE * pilot.cruise, 0.0)
+        if may_turn(self._near.points, pilot) or not safe(out, now, self._near.points, pilot):
+            self._out = None
+        return None if self._out is None else out
 
     def _back(self, now: Drive, stamp: float) -> Drive | None:
         """Backwards towards the next place of the way back; None when it has come to its end."""

@@ -66,7 +66,8 @@ def histogram(points: Floats, settings: SvfhSettings) -> Counts:
 def chosen_direction(open_: NDArray[np.bool_], wanted: float, left: bool) -> float | None:
     """The wanted direction [rad, robot frame] where it is open, else the middle of the nearest open one, or None.
 
-    open_: (n,). left: which of two equally near ones.
+    open_: (n,). left: which of two equally near ones; those that differ by no more than one direction are equally near,
+    or a robot before a wall would change its mind with every tick.
     """
     n = len(open_)
     width = math.tau / n
@@ -76,9 +77,10 @@ def chosen_direction(open_: NDArray[np.bool_], wanted: float, left: bool) -> flo
     if not free.size:
         return None
     off = np.remainder(free * width - wanted + math.pi, math.tau) - math.pi
-    aside = np.abs(off)
-    best = off[aside <= aside.min() + ROUNDING]
-    return wrap(wanted + float(best.max() if left else best.min()))
+    to_left, to_right = off[off > 0.0].min(initial=math.inf), -off[off < 0.0].max(initial=-math.inf)
+    tie = abs(to_left - to_right) <= width + ROUNDING
+    goes_left = left if tie else to_left < to_right
+    return wrap(wanted + float(to_left if goes_left else -to_right))
 
 
 def front_range(points: Floats, settings: SvfhSettings) -> float:

@@ -70,7 +70,10 @@ def hysteresis(total: Floats, before: Flags | None, settings: VfhPlusSettings) -
 
 
 def masked(blocked: Flags, points: Floats, heading: float, radius: float, clearance: float) -> Flags:
-    """Also blocked: what only a tighter turn than of this radius [m] would reach past the points."""
+    """Also blocked: what only a tighter turn than of this radius [m] would reach past the points.
+
+    Straight behind is reached by either side.
+    """
     if radius <= ROUNDING or not len(points):
         return blocked
     x, y = points[:, 0], points[:, 1]
@@ -81,8 +84,9 @@ def masked(blocked: Flags, points: Floats, heading: float, radius: float, cleara
     most_right = float(bearing[right].max(initial=-math.pi))
     n = len(blocked)
     off = np.remainder(np.arange(n) * math.tau / n - heading + math.pi, math.tau) - math.pi
-    result: Flags = blocked | (off > most_left) | (off < most_right)
-    return result
+    behind = np.abs(off) > math.pi - ROUNDING
+    result: Flags = blocked | ((off > most_left) | (off < most_right)) & ~behind
+    return result | (behind & bool(left.any() and right.any()))
 
 
 def openings(blocked: Flags) -> list[tuple[int, int]]:

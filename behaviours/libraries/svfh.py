@@ -107,6 +107,8 @@ def svfh_settings(values: Values) -> SvfhSettings:
     settings = settings_of(SvfhSettings(), _SVFH, values)
     if not 8 <= settings.directions <= 3600:
         raise ValueError("directions must be from 8 to 3600")
+    for name, value in (("window", settings.window), ("clearance", settings.clearance)):
+        positive(name, value)
     if settings.slow_range <= settings.stop_range:
         raise ValueError("slow-range must be more than stop-range")
     return settings
