@@ -121,7 +121,11 @@ class _Contour:
     def look(self, points: Floats, found: tuple[Line, ...], first: Line | None, here: Pose) -> Line | None:
         """Take a scan. The contour begins at the line `first`; gives the line on which it is, if it is on one."""
         self._points, self._from = snapped(points, found, self._settings.snap), here
-        contact = None if self._contact is None else anchored(self._points, to_robot(self._contact, here), self._settings.leap)
+        contact = (
+            None
+            if self._contact is None
+            else anchored(self._points, to_robot(self._contact, here), self._settings.leap)
+        )
         if contact is None and first is not None:
             contact = nearest_on(first, self._points)
         self._contact = None if contact is None else to_map(contact, here)
