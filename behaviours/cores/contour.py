@@ -1,12 +1,12 @@
 """The way along a contour: a disc of the stand-off rolls along the points.
 
-Takes: points, and the place where the disc touched last. Gives: the direction in which it rolls on, and where it touches
-then. Leaves alone: what the points belong to. All of it is for a contour to the left.
+Takes: points, and the place where the disc touched last. Gives: the direction in which it rolls on, and where it
+touches then. Leaves alone: what the points belong to. All of it is for a contour to the left.
 
-Chosen here. Gaps that the disc does not fit through are passed by; at the end of a wall it rolls round the corner, before
-a wall ahead it turns away in time, and what it touched last tells which contour is followed. Nearer to it or farther
-from it than the stand-off, the law of Yamauchi 2005 leads back, with the nearest point for the wall; the disc then rolls
-from the place where it would just touch.
+Chosen here. Gaps that the disc does not fit through are passed by; at the end of a wall it rolls round the corner,
+before a wall ahead it turns away in time, and what it touched last tells which contour is followed. Nearer to it or
+farther from it than the stand-off, the law of Yamauchi 2005 leads back, with the nearest point for the wall; too near,
+the disc rolls from the place where it would just touch.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from behaviours.interface import Floats, Vec2, wrap
 class ContourSettings:
     """look_ahead, snap, leap, least [m]; regain [rad/m]; steepest [rad].
 
-    look_ahead: how far the disc is swept; regain, steepest: how the stand-off is regained; snap: points so near to a line lie on it; leap: the place of contact may move by so much
-    from scan to scan; shrink: a disc that fits nowhere is made smaller by this share until one fits, at the smallest
-    `least`.
+    look_ahead: how far the disc is swept; regain, steepest: how the stand-off is regained; snap: points so near to a
+    line lie on it; leap: the place of contact may move by so much from scan to scan; shrink: a disc that fits nowhere
+    is made smaller by this share until one fits, at the smallest `least`.
     """
 
     look_ahead: float = 2.5

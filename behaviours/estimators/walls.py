@@ -3,8 +3,8 @@
 Takes: the points round the robot and where it believes to be. Gives: the wanted heading in the map frame, the wall, and
 whether the robot has come round to where it began. Leaves alone: obstacles beside the wall, and driving.
 
-The whole of it follows a wall to the left. To follow one to the right it looks at the world in a mirror, so that the two
-sides cannot differ.
+The whole of it follows a wall to the left. To follow one to the right it looks at the world in a mirror, so that the
+two sides cannot differ.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ SHOWN_BAND = 0.15
 
 @dataclass(frozen=True, slots=True)
 class RoundSettings:
-    """The robot has come round when it is back within `round_within` [m] of where it began, heading much as it did then,
-    after `round_after` [m] and having been twice as far away."""
+    """The robot has come round when it is back within `round_within` [m] of where it began, heading much as it did
+    then, after `round_after` [m] and having been twice as far away."""
 
     round_within: float = 3.0
     round_after: float = 20.0
@@ -71,7 +71,7 @@ class Walls:
             self._wanted = wrap(self._mirror * wanted)
 
     def _look(self, here: Pose) -> float | None:
-        """Take a scan, all of it seen so that the wall lies to the left; the wanted heading [rad] if there is a wall."""
+        """Take a scan, seen so that the wall lies to the left; gives the wanted heading [rad] if there is a wall."""
         follow, points = self.settings.follow, self._around.points * (1.0, self._mirror)
         found = lines(points, self.settings.hough)
         self._tally = tallied(self._tally, found, here.theta, follow)

@@ -85,10 +85,9 @@ def test_steering_takes_the_line_and_not_the_middle_of_its_bin():
 def test_a_new_wall_of_equal_strength_takes_over_after_so_many_scans(decay, scans):
     settings = FollowSettings(decay=decay)
     tally = after([[left(0.0)]] * 400, settings=settings)
-    for scan in range(1, 40):
-        tally = tallied(tally, [left(-math.pi / 2)], 0.0, settings)
-        if int(tally.argmax()) != 0:
-            break
+    scan = 0
+    while int(tally.argmax()) == 0:
+        tally, scan = tallied(tally, [left(-math.pi / 2)], 0.0, settings), scan + 1
     assert scan == math.ceil(math.log(2) / -math.log(1 - decay)) == scans
 
 

@@ -147,7 +147,7 @@ def test_coming_round_takes_a_way_a_distance_and_the_heading_of_the_start():
     rig = Rig()
     rig.at(0, 0, 0.0)
     rig.walls.follow()
-    for x in range(0, 12):
+    for x in range(12):
         rig.at(x, 0, 0.0)
     for x in range(12, -1, -1):
         assert not rig.at(x, 0, math.pi).has_come_round  # back the same way, facing the other way
