@@ -77,6 +77,14 @@ def test_evidence_adds_up_and_what_goes_away_fades():
     assert row(grid_of(scan([1.0]), *[scan([3.0])] * 4), 6)[5] < 50
 
 
+def test_evidence_that_cancels_out_is_still_known():
+    grid = grid_of(scan([1.0]), scan([3.0]), hit=0.6, passed=0.4)
+    assert row(grid, 6)[5] == 50
+    assert grid.known == 16
+    grid.add(scan([3.0]), HERE)
+    assert grid.known == 16
+
+
 def test_no_cell_gets_surer_than_the_surest():
     grid = grid_of(*[scan([1.0])] * 100)
     assert row(grid, 6) == [3, 3, 3, 3, 3, 97]
