@@ -201,6 +201,7 @@ def alleys(name: str, trapped: int, of: int) -> list[Measures]:
         ("paper", w3.WITHOUT, 20, "missed", w3.HELD),
         ("paper", w3.WITH, 1, "met", ""),
         ("paper", w3.WITH, 4, "missed", w3.STILL),
+        ("paper", w3.DEEP, 5, "missed", w3.STILL),
         ("modern", w3.WITHOUT, 20, "met", ""),
         ("modern", w3.WITH, 0, "met", ""),
         ("modern", w3.WITH, 1, "missed", w3.STILL),
@@ -214,8 +215,8 @@ def test_a_third_is_trapped_without_the_path_and_none_with_it(
 
 
 def test_there_are_twenty_four_alleys_unless_fewer_are_asked_for() -> None:
-    assert [len(case.seeds) for case in w3.cases(20)] == [24, 24]
-    assert [len(case.seeds) for case in w3.cases(3)] == [3, 3]
+    assert [len(case.seeds) for case in w3.cases(20)] == [24, 24, 24]
+    assert [len(case.seeds) for case in w3.cases(3)] == [3, 3, 3]
     assert w3.cases(1)[1].changes == w3.FORGOTTEN
 
 
@@ -224,9 +225,10 @@ def test_there_are_twenty_four_alleys_unless_fewer_are_asked_for() -> None:
 
 def test_a_case_may_change_the_plan() -> None:
     (batch,) = experiment.batches([Asked(w3.ROW, "paper")], 1)
-    with_path, without = batch.work.variants
+    with_path, without, deep = batch.work.variants
     assert without.changes == (*with_path.changes, *w3.FORGOTTEN)
     assert (with_path.scenario, without.scenario) == ("alley", "W3, without it")
+    assert "between: [6.2, 9.2]" in deep.text and deep.changes == with_path.changes
 
 
 def test_a_run_with_a_changed_plan_is_seen_through_reproduce() -> None:
