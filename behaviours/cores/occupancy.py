@@ -42,7 +42,8 @@ class OccupancySettings:
     """cell: side [m]. reach [m]: what lies beyond is left out.
 
     hit, passed: the probability of a cell in which a beam ended, or through which it went, if that is all that is
-    known. surest: no cell gets nearer to 0 or 1 than this is to 1.
+    known. surest: no cell gets nearer to 0 or 1 than this is to 1. spare: so many cells before its end a beam stops to
+    free what it passes, so that beams that graze a wall do not wipe it out.
     """
 
     cell: float = 0.2
@@ -50,6 +51,7 @@ class OccupancySettings:
     passed: float = 0.4
     surest: float = 0.97
     reach: float = 20.0
+    spare: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,9 +134,10 @@ class OccupancyGrid:
         cell = self.settings.cell
         x0, y0 = eye[0] / cell - window.column, eye[1] / cell - window.row
         changes = np.zeros(window.rows * window.columns, dtype=np.float32)
+        free = np.where(ended, np.maximum(ranges / cell - self.settings.spare, 0), ranges / cell).astype(np.float32)
         for some in range(0, ranges.size, FEW):
             part = slice(some, some + FEW)
-            changes[_passed(x0, y0, bearings[part], ranges[part] / cell, window)] = self._passed
+            changes[_passed(x0, y0, bearings[part], free[part], window)] = self._passed
         changes[_ends(x0, y0, bearings[ended], ranges[ended] / cell, window)] = self._hit
         odds = self.odds.at(window)
         told = changes.reshape(window.rows, window.columns)

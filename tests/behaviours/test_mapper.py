@@ -226,9 +226,17 @@ def test_the_library_gives_its_words_and_the_view(seen):
     assert offer.views["map"]() is None
 
 
+@pytest.mark.parametrize(("values", "spare"), [({}, 0.0), ({"preset": "paper"}, 0.0), ({"preset": "modern"}, 2.0)])
+def test_the_preset_says_how_beams_are_taken(values, spare):
+    workshop = Workshop()
+    library("mapping").build(values, workshop)
+    assert workshop.estimators[-1].settings.grid.spare == spare
+
+
 @pytest.mark.parametrize(
     ("values", "told"),
     [
+        ({"preset": "best"}, "preset must be paper or modern, not best"),
         ({"by": "gps"}, "by must be hybrid or odometry, not gps"),
         ({"hit": 0.4}, "expected 0 < passed < 0.5 < hit <= surest < 1"),
         ({"surest": 1.0}, "expected 0 < passed < 0.5 < hit <= surest < 1"),
