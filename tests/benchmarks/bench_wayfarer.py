@@ -1,0 +1,112 @@
+"""What the cores of the perimeter cost. Run it by hand: `python tests/benchmarks/bench_wayfarer.py`.
+
+Takes: nothing. Gives: a line for each core: processor time of a call, the best of several batches, and the most it
+may be. Leaves alone: whole runs (`rplan simulate` says how many simulated seconds go into one).
+"""
+
+from __future__ import annotations
+
+import itertools
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from behaviours.cores.contour import ContourSettings, rolled, snapped
+from behaviours.cores.hough import HoughSettings, lines
+from behaviours.cores.hybrid import HeadingModel, compared, first_belief, moved
+from behaviours.cores.occupancy import OccupancyGrid, OccupancySettings
+from behaviours.cores.patches import PatchWriter
+from behaviours.interface import Floats, Pose, Scan
+
+BATCH, BATCHES = 100, 20
+
+
+def microseconds(work: Callable[[], object]) -> float:
+    """Per call."""
+    best = float("inf")
+    for _ in range(BATCHES):
+        start = time.process_time()
+        for _ in range(BATCH):
+            work()
+        best = min(best, time.process_time() - start)
+    return best / BATCH * 1e6
+
+
+def scan(beams: int = 360, sd: float = 0.02) -> Floats:
+    """What a lidar sees in a room of 16 m, 1.5 m off a wall."""
+    bearings = np.arange(beams) * np.pi * 2 / beams
+    c, s = np.cos(bearings + 0.03), np.sin(bearings + 0.03)
+    with np.errstate(divide="ignore"):
+        across, along = np.where(c > 0, 7.0, -9.0) / c, np.where(s > 0, 1.5, -14.5) / s
+    reach = np.minimum(across, along) + sd * np.random.default_rng(0).standard_normal(beams)
+    return reach[:, None] * np.column_stack([np.cos(bearings), np.sin(bearings)])
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """limit [us] that the core must keep to."""
+
+    name: str
+    limit: float
+    work: Callable[[], object]
+
+
+def hough() -> Row:
+    """All lines of a scan, fitted."""
+    points, settings = scan(), HoughSettings()
+    return Row("Hough transform of 360 points", 200.0, lambda: lines(points, settings))
+
+
+def contour() -> Row:
+    """One roll of the disc, for which the points have been put on their lines."""
+    settings = ContourSettings()
+    points = snapped(scan(), lines(scan(), HoughSettings()), settings.snap)
+    return Row("disc along a contour of 360 points", 200.0, lambda: rolled(points, (0.0, 1.5), 1.5, settings))
+
+
+def sweep(far: float) -> Scan:
+    """A scan of 361 beams, none of which meets anything nearer than `far`."""
+    bearings = np.arange(1, 362) / 361 * np.pi * 2 - np.pi
+    return Scan(0.0, True, Pose(0.0, 0.0, 0.0), bearings, np.full(361, far), 0.05, 20.0)
+
+
+def grid() -> Row:
+    """All beams free to their 20 m: the most cells."""
+    occupancy, far = OccupancyGrid(OccupancySettings()), sweep(20.0)
+    return Row("grid, 361 beams of 20 m", 1000.0, lambda: occupancy.add(far, Pose(0.1, 0.1, 0.3)))
+
+
+def patch() -> Row:
+    """What changed in 40 m by 40 m, compressed: once a second."""
+    occupancy, writer = OccupancyGrid(OccupancySettings()), PatchWriter(0.2, 40.0)
+    scans = [sweep(far) for far in (3.0, 8.0)]
+    turns = itertools.cycle(scans)
+
+    def work() -> object:
+        occupancy.add(next(turns), Pose(0.1, 0.1, 0.3))
+        return writer.delta(occupancy, 0.0, 0.0)
+
+    return Row("grid and a patch of its changes", 5000.0, work)
+
+
+def heading() -> Row:
+    """One tick of the filter: compass, gyroscope and odometry."""
+    model = HeadingModel()
+    belief = first_belief(0.1, model, by_compass=True)
+    return Row("filter of the heading", 200.0, lambda: compared(moved(belief, 0.01, 0.05, 0.1, 0.1, model), 0.1, model))
+
+
+ROWS: tuple[Callable[[], Row], ...] = (hough, contour, grid, patch, heading)
+
+
+def main() -> None:
+    """Print a line for each row."""
+    for make in ROWS:
+        row = make()
+        print(f"{row.name:40} {microseconds(row.work):7.1f} us of {row.limit:.0f}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
