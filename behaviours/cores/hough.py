@@ -145,14 +145,15 @@ def _wipe(counted: NDArray[np.int32], normal: int, first: int, end: int) -> None
 
 
 def _fitted(moments: Floats, n: Floats, rho: Floats, band: float) -> tuple[Floats, Floats]:
-    """Lines of least squares through the points within `band` of lines; n (k, 2) unit normals, rho (k,)."""
+    """Lines of least squares through the points within `band` of lines; n (k, 2) unit normals, rho (k,).
+
+    moments (6, m): 1, x, y, xx, xy, yy of each point. A line that has lost its points gets rho 0.
+    """
     near = np.abs(n @ moments[1:3] - rho[:, None]) <= band
     count, sx, sy, sxx, sxy, syy = moments @ near.T.astype(np.float64)
-    few = count < 3.0
-    count[few] = 1.0
-    mx, my = sx / count, sy / count
-    along = 0.5 * np.arctan2(2.0 * (sxy / count - mx * my), (sxx - syy) / count - mx * mx + my * my)
-    fitted = np.stack([-np.sin(along), np.cos(along)], axis=1)
-    fitted[(fitted * n).sum(axis=1) < 0.0] *= -1.0
-    fitted[few] = n[few]
-    return fitted, np.where(few, rho, fitted[:, 0] * mx + fitted[:, 1] * my)
+    some = np.maximum(count, 1.0)
+    mx, my = sx / some, sy / some
+    along = 0.5 * np.arctan2(2.0 * (sxy / some - mx * my), (sxx - syy) / some - mx * mx + my * my)
+    fitted = np.stack([-np.sin(along), np.cos(along)])
+    reach = fitted[0] * mx + fitted[1] * my
+    return (fitted * np.copysign(1.0, reach)).T, np.where(count < 3.0, 0.0, np.abs(reach))
