@@ -14,10 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from behaviours.cores.contour import ContourSettings, rolled, snapped
+from behaviours.cores.flippers import Labour, LabourSettings
 from behaviours.cores.hough import HoughSettings, lines
 from behaviours.cores.hybrid import HeadingModel, compared, first_belief, moved
 from behaviours.cores.occupancy import OccupancyGrid, OccupancySettings
 from behaviours.cores.patches import PatchWriter
+from behaviours.cores.recent_path import Trace, TraceSettings
+from behaviours.cores.stasis import CycleSettings, profile, repeats, stood_still
 from behaviours.interface import Floats, Pose, Scan
 
 BATCH, BATCHES = 100, 20
@@ -98,7 +101,39 @@ def heading() -> Row:
     return Row("filter of the heading", 200.0, lambda: compared(moved(belief, 0.01, 0.05, 0.1, 0.1, model), 0.1, model))
 
 
-ROWS: tuple[Callable[[], Row], ...] = (hough, contour, grid, patch, heading)
+def recent_path() -> Row:
+    """One tick of the path by distance, its dead ends and all."""
+    trace, ticks = Trace(TraceSettings(by_distance=True)), itertools.count()
+
+    def work() -> object:
+        at = 0.05 * next(ticks)
+        trace.add(2 * at, (at, 0.0))
+        return trace.apart((at, 0.0))
+
+    return Row("recent path", 100.0, work)
+
+
+def slip() -> Row:
+    """Whether a scan looks as before, or as it should after the motion that tracks claim."""
+    points = scan()
+    before = profile(points)
+    return Row("motion by two scans", 200.0, lambda: stood_still(before, profile(points + 0.1), profile(points), 0.05))
+
+
+def cycle() -> Row:
+    """Whether half a minute of poses repeats itself: twice a second."""
+    t = np.arange(60) / 2
+    poses = np.column_stack([0.5 * t, np.sin(t / 9), np.cos(t / 9), np.sin(t / 9)])
+    return Row("motion that repeats itself", 1000.0, lambda: repeats(poses, CycleSettings()))
+
+
+def labour() -> Row:
+    """One reading of the motors' currents."""
+    machine, ticks = Labour(LabourSettings()), itertools.count()
+    return Row("state machine of the flippers", 20.0, lambda: machine.take(next(ticks) / 10, 1.5, 16.0))
+
+
+ROWS: tuple[Callable[[], Row], ...] = (hough, contour, grid, patch, heading, recent_path, slip, cycle, labour)
 
 
 def main() -> None:
