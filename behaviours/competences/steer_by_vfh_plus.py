@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from behaviours.competences.steer_clear import sectors_view, wanted_heading
+from behaviours.cores.look_ahead import LookAheadSettings, carrot, way
 from behaviours.cores.pilot import PilotSettings, Surrounds, may_turn, safe, towards
 from behaviours.cores.vfh_plus import Choice, VfhPlus, VfhPlusSettings
 from behaviours.cores.way_back import WayBack, WayBackSettings
@@ -25,6 +26,7 @@ from behaviours.estimators.surroundings import moved
 from behaviours.interface import STOP, Channels, Command, Drive, Floats, Pose, Reading, Report, View, wrap
 
 MAP = Pose(0.0, 0.0, 0.0)
+LOOKS, CARROT = 0.2, 0.6  # [s] between two looks ahead; [m] to the place of the way that is made for
 SQUEEZE = 0.35
 """Share of cruise out of where the hull cannot turn."""
 BACKWARDS = (0.5, 0.25, 0.12)
@@ -33,12 +35,15 @@ BACKWARDS = (0.5, 0.25, 0.12)
 
 @dataclass(frozen=True, slots=True)
 class SteerSettings:
-    """left: where to turn when nothing is open, and which of two equally good directions is taken."""
+    """left: where to turn when nothing is open, and which of two equally good directions is taken. ahead: None for VFH+
+    alone; else the way through what is seen is found first, and VFH+ goes along it.
+    """
 
     choice: VfhPlusSettings = field(default_factory=VfhPlusSettings)
     pilot: PilotSettings = field(default_factory=PilotSettings)
     way_back: WayBackSettings = field(default_factory=WayBackSettings)
     left: bool = True
+    ahead: LookAheadSettings | None = None
 
 
 class SteerByVfhPlus:
@@ -60,6 +65,8 @@ class SteerByVfhPlus:
         self._vfh = VfhPlus(self.settings.choice, self.settings.left)
         self._way = WayBack(self.settings.way_back)
         self._out: float | None = None
+        self._ahead: Floats = np.zeros((0, 2))
+        self._looked = -math.inf
         self._shown: View | None = None
 
     def start(self, reading: Reading, channels: Channels) -> None:
@@ -91,7 +98,7 @@ class SteerByVfhPlus:
     def _forward(self, heading: float, now: Drive, stamp: float, keep_off: bool) -> tuple[Command, Report]:
         pose, pilot = self._place.pose, self.settings.pilot
         self._way.advance(pose, stamp)
-        choice = self._choose(heading, now, keep_off)
+        choice = self._choose(self._looked_ahead(heading, stamp), now, keep_off)
         direction = choice.direction
         if self._out is not None:
             return self._command(self._straight_out(now)), Report(details={"doing": "straight out"})
@@ -102,6 +109,20 @@ class SteerByVfhPlus:
         seen = Surrounds(self._near.points, self._near.sees_all)
         drive = towards(wrap(direction - pose.theta), now, seen, pilot)
         return self._command(drive), Report(details={"direction": round(direction, 3)})
+
+    def _looked_ahead(self, heading: float, stamp: float) -> float:
+        """The direction [rad, map frame] in which the way through what is seen begins."""
+        if self.settings.ahead is None:
+            return heading
+        pose = self._place.pose
+        here = np.array((pose.x, pose.y))
+        if stamp - self._looked >= LOOKS:
+            seen = moved(self._near.points, pose, MAP)
+            points = np.concatenate([seen, self._way.dead_ends]) - here
+            self._ahead = way(points, heading, self._ahead - here, self.settings.ahead) + here
+            self._looked = stamp
+        direction = carrot(self._ahead, pose, CARROT)
+        return heading if direction is None else direction
 
     def _choose(self, heading: float, now: Drive, keep_off: bool) -> Choice:
         pose = self._place.pose
