@@ -13,15 +13,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from behaviours.cores import svfh
 from behaviours.cores.contour import ContourSettings, rolled, snapped
 from behaviours.cores.flippers import Labour, LabourSettings
 from behaviours.cores.hough import HoughSettings, lines
 from behaviours.cores.hybrid import HeadingModel, compared, first_belief, moved
+from behaviours.cores.look_ahead import LookAheadSettings, way
 from behaviours.cores.occupancy import OccupancyGrid, OccupancySettings
 from behaviours.cores.patches import PatchWriter
+from behaviours.cores.pilot import PilotSettings, Surrounds, towards
 from behaviours.cores.recent_path import Trace, TraceSettings
 from behaviours.cores.stasis import CycleSettings, profile, repeats, stood_still
-from behaviours.interface import Floats, Pose, Scan
+from behaviours.cores.vfh_plus import VfhPlus, VfhPlusSettings
+from behaviours.interface import Drive, Floats, Pose, Scan
 
 BATCH, BATCHES = 100, 20
 
@@ -133,7 +137,47 @@ def labour() -> Row:
     return Row("state machine of the flippers", 20.0, lambda: machine.take(next(ticks) / 10, 1.5, 16.0))
 
 
-ROWS: tuple[Callable[[], Row], ...] = (hough, contour, grid, patch, heading, recent_path, slip, cycle, labour)
+def scaled() -> Row:
+    """The histogram of a scan, a direction and a command, among things on every side."""
+    points, settings = crowded(), svfh.SvfhSettings()
+
+    def work() -> object:
+        direction = svfh.chosen_direction(svfh.histogram(points, settings) < settings.threshold, 0.3, True)
+        return svfh.drive(direction, True, svfh.front_range(points, settings), True, settings)
+
+    return Row("SVFH of 361 points", 100.0, work)
+
+
+def vfh() -> Row:
+    """The histogram of VFH+ and a direction."""
+    points, plus = crowded(), VfhPlus(VfhPlusSettings(), left=True)
+    return Row("VFH+ of 361 points", 1000.0, lambda: plus.choose(points, 0.1, 0.3, 0.3))
+
+
+def pilot() -> Row:
+    """A command that leaves the hull free, at full speed."""
+    points, now = crowded(), Drive(0.5, 0.0)
+    return Row("pilot, 361 points", 2000.0, lambda: towards(0.3, now, Surrounds(points), PilotSettings()))
+
+
+def look_ahead() -> Row:
+    """A way through what is seen, 4 m to every side: five times a second."""
+    points, nothing = crowded(), np.zeros((0, 2))
+    return Row("looking ahead, 361 points", 20000.0, lambda: way(points, 0.3, nothing, LookAheadSettings()))
+
+
+def crowded(beams: int = 361) -> Floats:
+    """What a lidar sees among things from 0.7 m to 3.9 m away."""
+    bearings = np.arange(beams) * np.pi * 2 / beams
+    reach = np.repeat(np.random.default_rng(0).uniform(0.7, 3.9, beams // 10 + 1), 10)[:beams]
+    points: Floats = reach[:, None] * np.column_stack([np.cos(bearings), np.sin(bearings)])
+    return points
+
+
+ROWS: tuple[Callable[[], Row], ...] = (
+    *(hough, contour, grid, patch, heading, recent_path, slip, cycle, labour),
+    *(scaled, vfh, pilot, look_ahead),
+)
 
 
 def main() -> None:
