@@ -92,4 +92,5 @@ LIBRARY = Library(
     ),
     (_PRESET, _BY, *_SENDING, *_GRID),
     _build,
+    works_unasked=True,
 )

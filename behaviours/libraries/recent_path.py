@@ -53,4 +53,5 @@ LIBRARY = Library(
     (boolean("we-were-here-lately", "The robot is where it was before, and was elsewhere in between."),),
     (_PRESET, *_TRACE),
     _build,
+    works_unasked=True,
 )

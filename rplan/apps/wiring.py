@@ -34,7 +34,7 @@ def signature(library: Library) -> LibrarySignature:
         for f in library.functions
     )
     parameters = tuple(ParameterSignature(p.name, Type(p.type, p.unit), p.default, p.doc) for p in library.parameters)
-    return LibrarySignature(library.name, functions, parameters, library.doc)
+    return LibrarySignature(library.name, functions, parameters, library.doc, library.works_unasked)
 
 
 def signatures(libraries: Catalogue | None = None) -> Libraries:
