@@ -46,7 +46,8 @@ def test_every_function_of_every_library_is_brought_to_life_by_its_crew() -> Non
     made = crew(plan)
     for library in LIBRARIES.values():
         for function in library.functions:
-            home = {"command": made.competences, "pose": made.values}.get(function.type, made.percepts)
+            sensed = {**made.percepts, **made.values}  # a value may be of any type
+            home = {"command": made.competences, "pose": made.values}.get(function.type, sensed)
             assert function.name in home
     assert made.safe == STOP
 
