@@ -44,7 +44,9 @@ PLACE = struct.Struct("<QQQQ")
 """First and last log time, offset and length of a chunk."""
 CHUNK_HEAD = struct.Struct("<QQQII")
 """First and last log time, size and checksum of what is packed, length of the compression's name."""
-END = HEAD.size + 20 + len(MAGIC)
+FOOT = struct.Struct("<BQQQI")
+"""Opcode and length of the footer, where the summary and its offsets begin, checksum of both."""
+END = FOOT.size + len(MAGIC)
 """Bytes of the footer with all that follows it."""
 
 Found = tuple[int, bytes]
@@ -185,21 +187,34 @@ def messages(path: Path, topic: str) -> Iterator[Found]:
 # --- back from a time -----------------------------------------------------------------------------
 
 
-def _index(stream: BinaryIO, size: int, topic: _Topic) -> list[Place]:
-    """The chunks as the summary of a whole file has them; topic learns its channels."""
+def _summary(stream: BinaryIO, size: int) -> bytes:
+    """The records between the data and the footer; empty where there are none."""
+    if size < END:
+        raise EOFError("the file ends before its footer")
     stream.seek(size - END)
-    opcode, _, start = struct.unpack_from("<BQQ", stream.read(END))
-    if opcode != FOOTER or start >= size - END:
+    footer = stream.read(END)
+    opcode, _, start, _, checksum = FOOT.unpack_from(footer)
+    if opcode != FOOTER or start > size - END:
         raise ValueError("the footer is wrong")
     if start == 0:
-        return []
+        return b""
     stream.seek(start)
-    summary, at, places = stream.read(size - END - start), 0, list[Place]()
+    summary = stream.read(size - END - start)
+    if checksum and zlib.crc32(footer[: FOOT.size - 4], zlib.crc32(summary)) != checksum:
+        raise ValueError("the checksum of the index is wrong")
+    return summary
+
+
+def _index(stream: BinaryIO, size: int, topic: _Topic) -> list[Place]:
+    """The chunks as the summary of a whole file has them; topic learns its channels."""
+    summary, at, places = _summary(stream, size), 0, list[Place]()
     while at < len(summary):
         opcode, length = HEAD.unpack_from(summary, at)
         at += HEAD.size
         if opcode == CHUNK_INDEX:
             first, _, offset, extent = PLACE.unpack_from(summary, at)
+            if offset + extent > size:
+                raise EOFError("the index speaks of a chunk beyond the end")
             places.append(Place(offset, extent, first))
         elif opcode == CHANNEL:
             topic.channel(summary, at)

@@ -1,8 +1,9 @@
 """A run on disk: one MCAP file with a header, one JSON object a tick, what the robot sensed, and a view for viewers.
 
 Takes: a header, and tick by tick the state of the world, the brain's note (JSON text) and the Reading. Gives: a file
-that is the same to the byte for the same run, since every stamp in it is simulated; and the ways back, `read`, `latest` and
-`readings`. Leaves alone: what world and brain put into their parts, the judgement of the run, and how it is shown.
+that is the same to the byte for the same run, since every stamp in it is simulated; and the ways back: `read`,
+`readings` and `latest`. Leaves alone: what world and brain put into their parts, the judgement of the run, how it is
+shown.
 
 Topics: `/header` once and `/tick` (JSON; tick n carries `tick`, `t` [s], `world`, `plan`), `/reading` (JSON, all that
 was sensed to the last bit), and the typed channels of `viewing.py`, so that any MCAP viewer can play the file as well.

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -23,11 +23,11 @@ from rplan.apps.commands.tick import Keys
 from rplan.apps.files import InputError, plan_file, unreadable
 from rplan.apps.wiring import compile_source, decider
 from rplan.driver import Compiled
-from rplan.goals.condition import Percept
+from rplan.goals.condition import Comparison, Percept, percept_terms
 from rplan.lang.diagnostic import PlanError
 from rplan.lang.include import OpenFile
 from rplan.lang.source import Source, Span
-from rplan.lang.units import BadNumberError, read_number
+from rplan.lang.units import BadNumberError, canonical_number, read_number
 from rplan.runtime.encode import PerceptError, PerceptValue, wrong_number
 from rplan.runtime.tick import Decider, Decision
 from rplan.runtime.trace import numbers, outputs_and_sent, texts
@@ -65,6 +65,26 @@ class Moment:
     sent: Mapping[str, str | None]
     since: Mapping[str, Since]
     percepts: Mapping[str, PerceptValue] | None = None
+
+    def numbers(self, texts: Iterable[str]) -> dict[str, float]:
+        """The numbers that the comparisons in these conditions ask, by percept, where they are known."""
+        comparisons = [one for one in self.compiled.ways.atoms if isinstance(one, Comparison)]
+        asked = [one for text in texts for one in comparisons if one.text in text]
+        known = self.percepts or {}
+        return {t.text: float(known[t.text]) for one in asked for t in percept_terms(one) if t.text in known}
+
+    def readable(self) -> dict[str, str]:
+        """The numbers with their units, to three digits or as many as no comparison needs to come out otherwise."""
+        if self.percepts is None:
+            return {}
+        values = dict(self.percepts)
+        atoms = [*zip(self.compiled.ways.atoms, self.atoms, strict=False)]
+        for name in numbers(self.compiled.ways):
+            every = (values | {name: float(f"{values[name]:.{digits}g}")} for digits in range(3, 18))
+            values = next(one for one in every if all(atom_value(atom, one) == value for atom, value in atoms))
+        terms = {term.text: term for term in self.compiled.goals.percepts(driving=True)}
+        units = {name: "" if term.type is None else term.type.unit for name, term in terms.items()}
+        return {name: canonical_number(float(values[name]), units[name]) for name in numbers(self.compiled.ways)}
 
     def place(self, span: Span) -> str:
         """A place without the folder."""

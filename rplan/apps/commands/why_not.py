@@ -82,10 +82,11 @@ def _text(tick: Moment, wishes: Wanted, found: WhyNot) -> Iterator[str]:
     wanted = " and ".join(f"{name} open" if value is None else f"{name} = {value}" for name, value in wishes.items())
     yield f"{wanted}: {VERDICTS[found.verdict]}"
     units = {term.text: "" if term.type is None else term.type.unit for term in tick.compiled.goals.percepts()}
+    was = tick.readable()
     for past in found.past:
         yield f"  {_past(past)}"
     for change in found.changes:
-        yield f"  {_change(change, units.get(change.percept, ''))}"
+        yield f"  {_change(change, units.get(change.percept, ''), was.get(change.percept, ''))}"
     if found.way is not None and found.verdict != "already":
         yield click.style("and then", bold=True)
     for act in found.way.acts if found.way is not None else ():
@@ -96,12 +97,12 @@ def _past(past: PastChange) -> str:
     return f"{past.was.condition} kept as {past.becomes} before, not {past.was}"
 
 
-def _change(change: Change, unit: str) -> str:
+def _change(change: Change, unit: str, readable: str) -> str:
     if isinstance(change.becomes, bool):
         return f"{change.percept} {'true' if change.becomes else 'false'}, not {'true' if change.was else 'false'}"
     turned = " and ".join(map(str, change.comparisons)) or "it is otherwise"
     number = "" if change.becomes is None else f", such as {canonical_number(change.becomes, unit)}"
-    was = "" if change.was is None else f", not {canonical_number(change.was, unit)}"
+    was = "" if change.was is None else f", not {readable}"
     return f"{change.percept} so that {turned}{number}{was}"
 
 
