@@ -17,6 +17,8 @@ from pathlib import Path
 
 from viewer.chromium import chromium
 from viewer.frames import draws
+from viewer.inspected import inspects
+from viewer.live import watched
 from viewer.points import Points, recorded
 from viewer.replayed import replay
 
@@ -37,6 +39,12 @@ async def look(parts: list[str], work: Path, shots: Path | None, points: Points)
             _, page = await recorded(work, FETCH, LONG)
             async with browser.tab() as tab:
                 await draws(tab, points, page)
+        if "live" in parts:
+            async with browser.tab() as tab:
+                await watched(tab, points, FETCH, SEED)
+        if "inspect" in parts:
+            async with browser.tab() as tab:
+                await inspects(tab, points, work)
 
 
 def main() -> int:

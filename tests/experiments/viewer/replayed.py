@@ -14,7 +14,7 @@ from viewer.chromium import Tab
 from viewer.points import Points, rplan
 
 CLOCK = "document.getElementById('clock').textContent.trim()"
-PIXELS = "document.getElementById('lot').toDataURL()"
+PIXELS = "new Promise(d => requestAnimationFrame(() => setTimeout(d))).then(() => document.getElementById('lot').toDataURL())"
 WHY = "document.getElementById('reasons').innerText"
 ASKED_AT = (0.05, 0.3, 0.67, 0.705, 0.9)
 """Where the timeline is clicked to ask why, as shares of its width: both searches, both legs, and danger beside."""
@@ -38,6 +38,14 @@ def seconds(clock: str) -> float:
 async def now(tab: Tab) -> float:
     """The time [s] that the page shows."""
     return seconds(await tab.eval(CLOCK))
+
+
+async def settles(tab: Tab) -> None:
+    """After the first readings of its pixels Chromium draws a canvas by another path, by shades otherwise: have it so."""
+    for _ in range(4):
+        for button in ("#back", "#ahead"):
+            await tab.click(button)
+            await tab.eval(PIXELS)
 
 
 async def opens(tab: Tab, points: Points, page: Path) -> None:
@@ -72,6 +80,7 @@ async def plays(tab: Tab, points: Points) -> None:
 async def steps(tab: Tab, points: Points) -> None:
     """A tick forward changes the world, a tick back brings back the very same picture."""
     await tab.click("#timeline", 0.7)
+    await settles(tab)
     start, picture, why = await now(tab), await tab.eval(PIXELS), await tab.eval(WHY)
     await tab.click("#ahead")
     ahead, changed = await now(tab), await tab.eval(PIXELS) != picture
