@@ -107,6 +107,7 @@ TICK_SCHEMA = {
             },
         },
         "plan": {"type": "object"},
+        "by_hand": {"type": "object"},
     },
 }
 READING_SCHEMA = {
@@ -152,14 +153,18 @@ class Recorder:
             self._file.close()
             raise
 
-    def tick(self, t: float, world: Json, note_json: str, reading: Reading | None = None) -> None:
+    def tick(
+        self, t: float, world: Json, note_json: str, reading: Reading | None = None, by_hand: Json | None = None
+    ) -> None:
         """Append one tick: simulated time [s], the world's snapshot, the brain's note as JSON text ("null": none).
 
-        reading: what the robot sensed in it; where it is given, `readings` gives it back.
+        reading: what the robot sensed in it; where it is given, `readings` gives it back. by_hand: what someone made
+        otherwise who watched; where there is nothing, it is left out.
         """
         nanoseconds = round(t * 1e9)
         note = _finite_text(note_json)
-        text = f'{{"tick":{self._count},"t":{json_text(t)},"world":{json_text(world)},"plan":{note}}}'
+        more = f',"by_hand":{json_text(by_hand)}' if by_hand else ""
+        text = f'{{"tick":{self._count},"t":{json_text(t)},"world":{json_text(world)},"plan":{note}{more}}}'
         with _as_oserror():
             self._tick.log(text.encode(), log_time=nanoseconds)
             if reading is not None:

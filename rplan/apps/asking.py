@@ -54,7 +54,8 @@ class Moment:
     """One tick. time: of the tick [s]; percepts: their values, None where only the atoms are known (in recordings of
     earlier days).
 
-    sent: output -> what its channel was sent, after idle and held values; since: output -> since when.
+    sent: output -> what its channel was sent, after idle and held values; since: output -> since when. forced: the
+    percepts that someone who watched had set by hand.
     """
 
     compiled: Compiled
@@ -65,6 +66,7 @@ class Moment:
     sent: Mapping[str, str | None]
     since: Mapping[str, Since]
     percepts: Mapping[str, PerceptValue] | None = None
+    forced: Mapping[str, PerceptValue] = field(default_factory=dict)
 
     def numbers(self, texts: Iterable[str]) -> dict[str, float]:
         """The numbers that the comparisons in these conditions ask, by percept, where they are known."""
@@ -160,7 +162,8 @@ def _recorded(path: Path, at: float | None) -> Moment:
         raise InputError(f"say when: --at SECONDS ({lasts})" if at is None else f"--at {at:g}: {lasts}")
     atoms, registers = _bits(path, found.plan, compiled)
     percepts = _percepts(path, found.plan, compiled, atoms)
-    return Moment(compiled, found.number, found.time, atoms, registers, found.shown, _since(found, ticks), percepts)
+    since, forced = _since(found, ticks), _forced(found.text, compiled)
+    return Moment(compiled, found.number, found.time, atoms, registers, found.shown, since, percepts, forced)
 
 
 def _last(path: Path) -> float:
@@ -250,6 +253,14 @@ def _bits(path: Path, plan: Mapping[str, object], compiled: Compiled) -> tuple[t
     if (len(found[0]), len(found[1])) != wanted:
         raise _read_otherwise(path)
     return found[0], found[1]
+
+
+def _forced(text: str, compiled: Compiled) -> dict[str, PerceptValue]:
+    by_hand = json.loads(text).get("by_hand")
+    forced = by_hand.get("forced") if isinstance(by_hand, Mapping) else None
+    known = forced if isinstance(forced, Mapping) else {}
+    read = [term.text for term in compiled.goals.percepts(driving=True)]
+    return {name: known[name] for name in read if isinstance(known.get(name), bool | int | float)}
 
 
 def _percepts(

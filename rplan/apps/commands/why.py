@@ -40,6 +40,13 @@ def heading(tick: Moment) -> str:
     return f"{tick.compiled.goals.name} at {tick.time:g} s (tick {tick.tick})"
 
 
+def by_hand(tick: Moment) -> Iterator[str]:
+    """The percepts that someone forced."""
+    readable = tick.readable()
+    told = (f"{name} = {readable.get(name, str(value).lower())}" for name, value in tick.forced.items())
+    yield from [f"  forced by hand: {', '.join(told)}"] if tick.forced else []
+
+
 def _text(tick: Moment, why: Why) -> Iterator[str]:
     yield click.style(heading(tick), bold=True)
     if why.way.hole:
@@ -47,6 +54,7 @@ def _text(tick: Moment, why: Why) -> Iterator[str]:
     for act in why.way.acts:
         yield f"  {act.output} is {act.value}: set by {act.rule}, {tick.place(act.span)}{_since(tick, act)}"
     yield from _open(tick, why)
+    yield from by_hand(tick)
     if why.served:
         yield click.style("by way of", bold=True)
     for rule in why.served:
@@ -105,6 +113,7 @@ def _plain(tick: Moment, why: Why) -> dict[str, object]:
         "way": way_json(why.way, tick.compiled.source.name),
         "rules": [{"rule": rule.head, "place": talk.place(rule.span)} for rule in why.served],
         "percepts": None if tick.percepts is None else dict(tick.percepts),
+        "forced": dict(tick.forced),
         "literals": [_literal(tick, one) for one in why.literals],
         "smallest": why.smallest,
         "kept": [asdict(one) for one in why.kept],

@@ -10,7 +10,7 @@ import click
 
 from rplan.apps import talk
 from rplan.apps.asking import Moment, moment, split, with_moment
-from rplan.apps.commands.why import heading
+from rplan.apps.commands.why import by_hand, heading
 from rplan.apps.files import InputError
 from rplan.lang.units import BadNumberError, canonical_number, read_number
 from rplan.runtime.trace import way_json
@@ -80,6 +80,7 @@ def _canonical(value: str, known: dict[str, int]) -> str:
 def _text(tick: Moment, wishes: Wanted, found: WhyNot) -> Iterator[str]:
     yield click.style(heading(tick), bold=True)
     wanted = " and ".join(f"{name} open" if value is None else f"{name} = {value}" for name, value in wishes.items())
+    yield from by_hand(tick)
     yield f"{wanted}: {VERDICTS[found.verdict]}"
     units = {term.text: "" if term.type is None else term.type.unit for term in tick.compiled.goals.percepts()}
     was = tick.readable()
@@ -113,6 +114,7 @@ def _plain(tick: Moment, wishes: Wanted, found: WhyNot) -> dict[str, object]:
         "t": tick.time,
         "wanted": dict(wishes),
         "verdict": found.verdict,
+        "forced": dict(tick.forced),
         "changes": [asdict(one) for one in found.changes],
         "past": [
             {"condition": one.was.condition, "was": one.was.value, "becomes": one.becomes.value} for one in found.past
