@@ -15,10 +15,11 @@ import sys
 import tempfile
 from pathlib import Path
 
-from viewer.chromium import chromium
+from viewer.chromium import Tab, chromium
 from viewer.frames import draws
-from viewer.inspected import inspects
-from viewer.live import watched
+from viewer.inspected import PLANS, inspects, viewed
+from viewer.live import viewing, watched
+from viewer.pictures import everywhere, moments, opened
 from viewer.points import Points, recorded
 from viewer.replayed import replay
 
@@ -29,22 +30,47 @@ PARTS = ("replay", "frames", "live", "inspect")
 
 
 async def look(parts: list[str], work: Path, shots: Path | None, points: Points) -> None:
-    """Try all parts in one browser."""
+    """Try all parts in one browser, each in a tab of its own."""
+    tries = {"replay": _replayed, "frames": _drawn, "live": _live, "inspect": _inspected}
     async with chromium() as browser:
-        if "replay" in parts:
-            run, page = await recorded(work, FETCH, SEED)
+        for part in parts:
             async with browser.tab() as tab:
-                await replay(tab, points, run, page)
-        if "frames" in parts:
-            _, page = await recorded(work, FETCH, LONG)
-            async with browser.tab() as tab:
-                await draws(tab, points, page)
-        if "live" in parts:
-            async with browser.tab() as tab:
-                await watched(tab, points, FETCH, SEED)
-        if "inspect" in parts:
-            async with browser.tab() as tab:
-                await inspects(tab, points, work)
+                await tries[part](tab, work, shots, points)
+
+
+async def _replayed(tab: Tab, work: Path, shots: Path | None, points: Points) -> None:
+    run, page = await recorded(work, FETCH, SEED)
+    await replay(tab, points, run, page)
+    if shots:
+        await moments(tab, shots, page)
+
+
+async def _drawn(tab: Tab, work: Path, _: Path | None, points: Points) -> None:
+    _, page = await recorded(work, FETCH, LONG)
+    await draws(tab, points, page)
+
+
+async def _live(tab: Tab, _: Path, shots: Path | None, points: Points) -> None:
+    async with viewing(FETCH, "--seed", str(SEED), "--paused") as address:
+        await watched(tab, points, address)
+        if shots:
+            await everywhere(tab, shots, "live")
+
+
+async def _inspected(tab: Tab, work: Path, shots: Path | None, points: Points) -> None:
+    for name in PLANS:
+        page = await inspects(tab, points, work, name)
+        if shots:
+            await opened(tab, page.as_uri())
+            await everywhere(tab, shots, f"inspect-{name}")
+            for drawing in sorted(work.glob(f"{name}.*.svg")):
+                await tab.call("Page.navigate", url=drawing.as_uri())
+                await tab.until("!!document.querySelector('text')")
+                await tab.picture(shots / f"{drawing.stem}-svg.png")
+    _, run = await recorded(work, str(work / "reporting.rplan"), SEED, "--scenario", f"{FETCH}/parking_lot.yaml")
+    await viewed(tab, points, run)
+    if shots:
+        await everywhere(tab, shots, "many-rules")
 
 
 def main() -> int:
@@ -53,6 +79,8 @@ def main() -> int:
     parser.add_argument("--shots", type=Path, help="write pictures into this folder")
     parser.add_argument("--only", choices=PARTS, action="append", help="try this part; more than once for more")
     wanted = parser.parse_args()
+    if wanted.shots:
+        wanted.shots.mkdir(parents=True, exist_ok=True)
     points = Points()
     print("| part | point | | seen |\n| --- | --- | --- | --- |")
     with tempfile.TemporaryDirectory() as work:

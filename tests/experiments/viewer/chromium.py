@@ -23,7 +23,7 @@ from websockets.asyncio.client import ClientConnection, connect
 OPTIONS = """--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking
 --disable-component-update --disable-sync --hide-scrollbars --remote-debugging-port=0""".split()
 CODES = {" ": ("Space", 32), "ArrowLeft": ("ArrowLeft", 37), "ArrowRight": ("ArrowRight", 39)}
-CODES |= {"Home": ("Home", 36), "End": ("End", 35), "Escape": ("Escape", 27)}
+CODES |= {"Enter": ("Enter", 13), "Home": ("Home", 36), "End": ("End", 35), "Escape": ("Escape", 27)}
 WIDE, LAPTOP, PHONE = (1440, 900), (1280, 720), (390, 844)
 SHIFT = 8
 PATIENCE_S = 20.0
@@ -116,7 +116,7 @@ class Tab:
         code, number = CODES.get(key, ("", ord(key.upper()) if len(key) == 1 else 0))
         given: dict[str, Any] = {"key": key, "code": code, "windowsVirtualKeyCode": number}
         given |= {"modifiers": SHIFT if shift else 0}
-        typed = {"text": key} if len(key) == 1 else {}
+        typed = {"text": {"Enter": "\r"}.get(key, key)} if len(key) == 1 or key == "Enter" else {}
         await self.call("Input.dispatchKeyEvent", type="keyDown", **given, **typed)
         await self.call("Input.dispatchKeyEvent", type="keyUp", **given)
 

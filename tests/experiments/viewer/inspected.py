@@ -10,7 +10,7 @@ from pathlib import Path
 from viewer.chromium import Tab
 from viewer.points import ROOT, Points, rplan
 
-RULES, WIDEST = 200, 200
+RULES, WIDEST = 200, 120
 FETCH = ROOT / "plans" / "find_and_fetch" / "find_and_fetch.rplan"
 OVERLAPS = """(() => {
   const boxes = [...document.querySelectorAll('text')].map(t => [t.getBoundingClientRect(), t.textContent]), all = [];
@@ -26,51 +26,59 @@ OVERLAPS = """(() => {
   });
   return all;
 })()"""
+ENDS = "))\n"
 SHOWN = "[...document.querySelectorAll('{}')].filter(n => n.offsetParent && n.checkVisibility()).length"
 
 
-def plan_text(rules: int) -> str:
-    """Find and fetch with so many rules that each report something beside it."""
+def reporting(rules: int) -> str:
+    """Find and fetch with so many rules; those beside its own each report something to whoever listens."""
     text = FETCH.read_text(encoding="utf-8")
     head, goal = text[: text.index("(defgoalr")], text[text.index("(defgoalr") :]
-    own = goal.count("(defgoalr")
     percepts = ["there-is-a-goal", "we-are-at-the-goal", "donor-has-been-located", "anything-is-too-close"]
-    names = [f"report-{k:03}" for k in range(rules - own)]
+    names = [f"report-{k:03}" for k in range(rules - goal.count("(defgoalr"))]
     outputs = "".join(f"(defoutput {name} bool :idle false)\n" for name in names)
     bodies = "".join(
         f"(defgoalr (ach {name})\n  (if (and ({percepts[k % 4]}) (not ({percepts[(k + 1 + k // 7 % 3) % 4]})))\n"
         f"      (do {name} true)\n      (do anything)))\n\n"
         for k, name in enumerate(names)
     )
-    top = goal.rindex("(ach move-to-goal)")
     more = "".join(f"\n                  (ach {name})" for name in names)
-    top += len("(ach move-to-goal)")
-    body = goal[: goal.index("(goalem")], goal[goal.index("(goalem") : top]
-    return f"{head}{outputs}\n{body[0]}{bodies}{body[1]}{more}{goal[top:]}"
+    return f"{head}{outputs}\n{goal.replace('(goalem', f'{bodies}(goalem').removesuffix(ENDS)}{more}{ENDS}"
 
 
-async def inspects(tab: Tab, points: Points, folder: Path) -> Path:
-    """Text, drawings, page; gives the plan's file."""
-    plan = folder / "two_hundred.rplan"
-    plan.write_text(plan_text(RULES), encoding="utf-8")
+def tangled(rules: int) -> str:
+    """A plan of so many rules for one output, with more conditions than a table can have columns."""
+    heads = [f"(ach report-{k:03})" for k in range(rules)]
+    bodies = [
+        f"(defgoalr {head}\n  (if (and (near-{k:03}) (kind-{k % 17})) (do action (say-{k:03})) (do anything)))\n"
+        for k, head in enumerate(heads)
+    ]
+    top = "\n                  ".join(heads)
+    return f"(plan tangled)\n(defoutput action command :idle (stop))\n\n{''.join(bodies)}(goalem (prio-and {top}))\n"
+
+
+async def inspects(tab: Tab, points: Points, folder: Path, name: str) -> Path:
+    """Text, drawings and page of one of the plans; gives the page."""
+    plan = folder / f"{name}.rplan"
+    plan.write_text(PLANS[name](RULES), encoding="utf-8")
     await _text(points, plan)
     await _drawings(tab, points, plan)
     page = plan.with_suffix(".inspect.html")
     await rplan("inspect", str(plan), "--html", str(page))
     await tab.open(page.as_uri())
-    await _searched(tab, points)
-    await _folded(tab, points)
-    points.add("i", "the page makes the console complain of nothing", not tab.complaints, tab.complaints or "none")
-    return plan
+    await _searched(tab, points, plan.stem)
+    await _folded(tab, points, plan.stem)
+    points.add("i", f"{name}: the console has no complaint", not tab.complaints, tab.complaints or "none")
+    return page
 
 
 async def _text(points: Points, plan: Path) -> None:
     said = await rplan("inspect", str(plan))
     lines = said.splitlines()
     widest = max(map(len, lines))
-    named = all(f"(ach report-{k:03})" in said for k in range(RULES - 7))
+    named = all(f"(ach report-{k:03})" in said for k in range(RULES - 10))
     seen = f"{len(lines):,} lines, the widest has {widest} letters"
-    points.add("i", "as text: each rule is there, no line too wide", named and widest <= WIDEST, seen)
+    points.add("i", f"{plan.stem} as text: each rule is there, no line too wide", named and widest <= WIDEST, seen)
 
 
 async def _drawings(tab: Tab, points: Points, plan: Path) -> None:
@@ -81,10 +89,10 @@ async def _drawings(tab: Tab, points: Points, plan: Path) -> None:
         await tab.until("document.readyState === 'complete' && !!document.querySelector('text')")
         faults, texts = await tab.eval(OVERLAPS), await tab.eval("document.querySelectorAll('text').length")
         said = f"{len(faults)}: {faults[:3]}" if faults else f"{texts} texts"
-        points.add("i", f"--{part} --svg: no text over another or cut off", not faults and texts > RULES, said)
+        points.add("i", f"{plan.stem} --{part} --svg: no text over another or cut off", not faults and texts > 40, said)
 
 
-async def _searched(tab: Tab, points: Points) -> None:
+async def _searched(tab: Tab, points: Points, name: str) -> None:
     rows, places = "#table tr.hit", "#goals .place"
     every = [await tab.eval(SHOWN.format(one)) for one in (rows, places)]
     await tab.key("/")
@@ -92,17 +100,17 @@ async def _searched(tab: Tab, points: Points) -> None:
         await tab.key(letter)
     found = [await tab.eval(SHOWN.format(one)) for one in (rows, places)]
     marked, said = await tab.eval(SHOWN.format(".found")), await tab.eval("document.getElementById('count').textContent")
-    met = marked > 3 and 0 < found[0] < 10 and 0 < found[1] < 20 and every[0] > 100
-    points.add("i", "the page: a search for report-123 leaves its rows and places", met, f"{every} -> {found}, {said}")
+    met = marked >= 3 and 0 < found[0] < 10 and 0 < found[1] < 20 and every[0] > 30
+    points.add("i", f"{name}, its page: a search for report-123 leaves its rows and places", met, f"{every} -> {found}, {said}")
     seen = "(n => n.getBoundingClientRect().top < innerHeight && n.getBoundingClientRect().bottom > 0)"
     first = await tab.eval(f"{seen}(document.querySelector('tr.found'))")
-    points.add("i", "and its first row is in sight", first)
+    points.add("i", f"{name}: and its first row is in sight", first)
     await tab.key("Escape")
     again = [await tab.eval(SHOWN.format(one)) for one in (rows, places)]
-    points.add("i", "Escape shows all again", again[0] == every[0] and not await tab.eval(SHOWN.format(".found")), again)
+    points.add("i", f"{name}: Escape shows all again", again[0] == every[0] and not await tab.eval(SHOWN.format(".found")), again)
 
 
-async def _folded(tab: Tab, points: Points) -> None:
+async def _folded(tab: Tab, points: Points, name: str) -> None:
     counts = []
     for button in ("#unfold", "#fold"):
         await tab.click(button)
@@ -111,4 +119,36 @@ async def _folded(tab: Tab, points: Points) -> None:
     await tab.click(f"{rule}:has(.rule)", 0.01)
     counts.append(await tab.eval(SHOWN.format("#goals .place")))
     met = counts[0] > 3 * RULES > counts[1] and counts[2] > counts[1]
-    points.add("i", "folds: all, none, and one rule by a click", met, f"{counts} places in sight")
+    points.add("i", f"{name}: folds all, none, one rule by a click", met, f"{counts} places in sight")
+
+
+async def viewed(tab: Tab, points: Points, page: Path) -> None:
+    """The page of a run of `reporting`: what has 200 rules is folded, and can be searched."""
+    await tab.open(page.as_uri())
+    await tab.click("#timeline", 0.7)
+    places = [await tab.eval(SHOWN.format(one)) for one in ("#rules .rule", "#losers p")]
+    folds = await tab.eval("[...document.querySelectorAll('#reasons summary')].map(s => s.textContent)")
+    points.add("i", "a run of it: few rules and losers, the others folded", max(places) < 30 and len(folds) > 1,
+               f"{places} in sight; {folds}")  # fmt: skip
+    await tab.click("#losers summary")
+    more = await tab.eval(SHOWN.format("#losers p"))
+    await tab.key("ArrowRight")
+    kept = await tab.eval(SHOWN.format("#losers p"))
+    points.add("i", "a run of it: a fold opens, and stays so when time goes on", more > places[1] and kept >= more - 5,
+               f"{places[1]} -> {more} -> {kept} losers")  # fmt: skip
+    await tab.key("/")
+    for letter in "report-150":
+        await tab.key(letter)
+    hits = await tab.eval("document.getElementById('hits').textContent")
+    lines = await tab.eval("[...document.querySelectorAll('#code .found')].length")
+    left = await tab.eval(SHOWN.format("#rules .rule")) + await tab.eval(SHOWN.format("#losers p"))
+    await tab.key("Enter")
+    seen = await tab.eval("""(() => { const box = document.getElementById('code').getBoundingClientRect();
+        const line = document.querySelectorAll('#code .found')[1].getBoundingClientRect();
+        return line.top >= box.top && line.bottom <= box.bottom; })()""")
+    met = lines == 4 and hits.startswith("1 of 4") and seen and 0 < left < 4
+    points.add("i", "a run of it: / finds lines, rules and goals; Enter shows the next", met, f"{hits}; {left} rules")
+    points.add("i", "a run of it: no complaint", not tab.complaints, tab.complaints or "none")
+
+
+PLANS = {"reporting": reporting, "tangled": tangled}
