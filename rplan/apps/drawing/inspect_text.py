@@ -69,7 +69,7 @@ def _about(row: Row, indent: int) -> Iterator[str]:
 
 def _packed(items: Sequence[str], lead: str, indent: int, between: str = ", ") -> list[str]:
     """As many items on a line as go there, one at least; further lines stand below the first item."""
-    room, blank = max(WIDTH - indent, LEAST), " " * len(lead)
+    room, blank = max(WIDTH - indent, LEAST) - len(between.rstrip()), " " * len(lead)
     lines = [lead + items[0]]
     for item in items[1:]:
         if len(lines[-1]) + len(between) + len(item) > room:

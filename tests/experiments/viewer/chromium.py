@@ -20,8 +20,8 @@ from typing import Any
 
 from websockets.asyncio.client import ClientConnection, connect
 
-OPTIONS = """--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking
---disable-component-update --disable-sync --hide-scrollbars --remote-debugging-port=0""".split()
+QUIET = ("--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync")
+OPTIONS = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", *QUIET, "--hide-scrollbars")
 CODES = {" ": ("Space", 32), "ArrowLeft": ("ArrowLeft", 37), "ArrowRight": ("ArrowRight", 39)}
 CODES |= {"Enter": ("Enter", 13), "Home": ("Home", 36), "End": ("End", 35), "Escape": ("Escape", 27)}
 WIDE, LAPTOP, PHONE = (1440, 900), (1280, 720), (390, 844)
@@ -192,7 +192,12 @@ async def chromium() -> AsyncIterator[Browser]:
     """A headless Chromium with a profile of its own, ended at the end."""
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         process = await asyncio.create_subprocess_exec(
-            "chromium", *OPTIONS, f"--user-data-dir={profile}", "about:blank", stderr=asyncio.subprocess.PIPE
+            "chromium",
+            *OPTIONS,
+            "--remote-debugging-port=0",
+            f"--user-data-dir={profile}",
+            "about:blank",
+            stderr=asyncio.subprocess.PIPE,
         )
         assert process.stderr is not None
         try:

@@ -12,17 +12,18 @@ from viewer.points import ROOT, Points, rplan
 
 RULES, WIDEST = 200, 120
 FETCH = ROOT / "plans" / "find_and_fetch" / "find_and_fetch.rplan"
+HOSTILE = "; </script><img src=x onerror=alert(1)> <!-- {{data}}\n"
+"""What a plan says in a comment must stay a comment."""
 OVERLAPS = """(() => {
   const boxes = [...document.querySelectorAll('text')].map(t => [t.getBoundingClientRect(), t.textContent]), all = [];
   const flat = [...document.querySelectorAll('text')].map(t => !t.closest('[transform]'));
   const page = document.documentElement.getBoundingClientRect();
+  const aside = (a, b) => a.left >= b.right - 2 || b.left >= a.right - 2 || a.top >= b.bottom - 4 || b.top >= a.bottom - 4;
   boxes.forEach(([a, words], k) => {
-    if (a.left < page.left - 1 || a.right > page.right + 1 || a.bottom > page.bottom + 1) all.push('cut off: ' + words);
-    if (!flat[k]) return;
-    for (let j = k + 1; j < boxes.length; j++) {
-      const b = boxes[j][0];
-      if (flat[j] && a.left < b.right - 2 && b.left < a.right - 2 && a.top < b.bottom - 4 && b.top < a.bottom - 4) all.push(words + ' over ' + boxes[j][1]);
-    }
+    const out = a.left < page.left - 1 || a.right > page.right + 1 || a.bottom > page.bottom + 1;
+    if (out) all.push('cut off: ' + words);
+    for (let j = k + 1; flat[k] && j < boxes.length; j++)
+      if (flat[j] && !aside(a, boxes[j][0])) all.push(words + ' over ' + boxes[j][1]);
   });
   return all;
 })()"""
@@ -43,7 +44,7 @@ def reporting(rules: int) -> str:
         for k, name in enumerate(names)
     )
     more = "".join(f"\n                  (ach {name})" for name in names)
-    return f"{head}{outputs}\n{goal.replace('(goalem', f'{bodies}(goalem').removesuffix(ENDS)}{more}{ENDS}"
+    return f"{head}{HOSTILE}{outputs}\n{goal.replace('(goalem', f'{bodies}(goalem').removesuffix(ENDS)}{more}{ENDS}"
 
 
 def tangled(rules: int) -> str:
@@ -99,15 +100,25 @@ async def _searched(tab: Tab, points: Points, name: str) -> None:
     for letter in "report-123":
         await tab.key(letter)
     found = [await tab.eval(SHOWN.format(one)) for one in (rows, places)]
-    marked, said = await tab.eval(SHOWN.format(".found")), await tab.eval("document.getElementById('count').textContent")
+    marked, said = (
+        await tab.eval(SHOWN.format(".found")),
+        await tab.eval("document.getElementById('count').textContent"),
+    )
     met = marked >= 3 and 0 < found[0] < 10 and 0 < found[1] < 20 and every[0] > 30
-    points.add("i", f"{name}, its page: a search for report-123 leaves its rows and places", met, f"{every} -> {found}, {said}")
+    points.add(
+        "i", f"{name}, its page: a search for report-123 leaves its rows and places", met, f"{every} -> {found}, {said}"
+    )
     seen = "(n => n.getBoundingClientRect().top < innerHeight && n.getBoundingClientRect().bottom > 0)"
     first = await tab.eval(f"{seen}(document.querySelector('tr.found'))")
     points.add("i", f"{name}: and its first row is in sight", first)
     await tab.key("Escape")
     again = [await tab.eval(SHOWN.format(one)) for one in (rows, places)]
-    points.add("i", f"{name}: Escape shows all again", again[0] == every[0] and not await tab.eval(SHOWN.format(".found")), again)
+    points.add(
+        "i",
+        f"{name}: Escape shows all again",
+        again[0] == every[0] and not await tab.eval(SHOWN.format(".found")),
+        again,
+    )
 
 
 async def _folded(tab: Tab, points: Points, name: str) -> None:
@@ -148,7 +159,10 @@ async def viewed(tab: Tab, points: Points, page: Path) -> None:
         return line.top >= box.top && line.bottom <= box.bottom; })()""")
     met = lines == 4 and hits.startswith("1 of 4") and seen and 0 < left < 4
     points.add("i", "a run of it: / finds lines, rules and goals; Enter shows the next", met, f"{hits}; {left} rules")
-    points.add("i", "a run of it: no complaint", not tab.complaints, tab.complaints or "none")
+    strangers = await tab.eval("document.querySelectorAll('img').length")
+    said = await tab.eval("document.getElementById('code').textContent.includes('onerror=alert')")
+    safe = said and not strangers and not tab.complaints
+    points.add("i", "a run of it: a hostile comment stays text; no complaint", safe, tab.complaints or "none")
 
 
 PLANS = {"reporting": reporting, "tangled": tangled}

@@ -14,13 +14,12 @@ from contextlib import asynccontextmanager
 from typing import Any
 from urllib.parse import urlsplit
 
-from websockets.asyncio.client import connect
-from websockets.exceptions import InvalidStatus
-from websockets.typing import Origin
-
 from viewer.chromium import Tab, line_with
 from viewer.points import ROOT, RPLAN, Points
 from viewer.replayed import PIXELS, now, settles
+from websockets.asyncio.client import connect
+from websockets.exceptions import InvalidStatus
+from websockets.typing import Origin
 
 TICKS = "viewer.ticks"
 SAID = "document.getElementById('said').textContent"
@@ -79,7 +78,9 @@ async def runs(tab: Tab, points: Points) -> None:
     await tab.click("#ahead")
     same = await now(tab) == at and await tab.eval(PIXELS) == picture and await tab.eval(TICKS) == stands + 1
     seen = f"{at:.1f} -> {before:.1f} -> {await now(tab):.1f} s"
-    points.add("h", "steps back and forth with the same pixels", round(at - before, 3) == 0.1 and changed and same, seen)
+    points.add(
+        "h", "steps back and forth with the same pixels", round(at - before, 3) == 0.1 and changed and same, seen
+    )
 
 
 async def meddles(tab: Tab, points: Points) -> None:

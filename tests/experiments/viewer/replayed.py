@@ -14,7 +14,8 @@ from viewer.chromium import Tab
 from viewer.points import Points, rplan
 
 CLOCK = "document.getElementById('clock').textContent.trim()"
-PIXELS = "new Promise(d => requestAnimationFrame(() => setTimeout(d))).then(() => document.getElementById('lot').toDataURL())"
+PIXELS = """new Promise(drawn => requestAnimationFrame(() => setTimeout(drawn)))
+    .then(() => document.getElementById('lot').toDataURL())"""
 WHY = "document.getElementById('reasons').innerText"
 ASKED_AT = (0.05, 0.3, 0.67, 0.705, 0.9)
 """Where the timeline is clicked to ask why, as shares of its width: both searches, both legs, and danger beside."""
@@ -41,7 +42,7 @@ async def now(tab: Tab) -> float:
 
 
 async def settles(tab: Tab) -> None:
-    """After the first readings of its pixels Chromium draws a canvas by another path, by shades otherwise: have it so."""
+    """After some readings of its pixels Chromium draws a canvas by another path, by shades otherwise: have it so."""
     for _ in range(4):
         for button in ("#back", "#ahead"):
             await tab.click(button)
@@ -158,7 +159,9 @@ async def explains(tab: Tab, points: Points, run: Path) -> None:
 async def _explained(tab: Tab, why: Any) -> list[str]:
     told = await tab.eval(LOSERS)
     wanted = [f"{one['goal']} {one['because']}" for one in why["lost"] if not one["part_of"]]
-    faults = [f"lost {one}" for one in wanted if one not in told] + [f"lost {one}?" for one in told if one not in wanted]
+    faults = [f"lost {one}" for one in wanted if one not in told] + [
+        f"lost {one}?" for one in told if one not in wanted
+    ]
     acts = sorted({act["line"] for act in why["way"]["acts"]})
     if acts != await tab.eval(f"{LIT}('act')"):
         faults.append(f"lines {acts} act")
