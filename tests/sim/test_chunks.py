@@ -93,6 +93,26 @@ def test_the_way_back_begins_with_the_last_tick_that_is_not_later(path: Path, un
     assert numbers(path, -0.1) == []
 
 
+def test_a_message_at_the_very_time_counts(path: Path, tmp_path: Path) -> None:
+    bare = written(tmp_path / "bare.mcap", CompressionType.NONE, chunking=False)
+    for file in (path, bare):
+        assert next(chunks.latest(file, "/tick", 10**8))[0] == 10**8
+        assert next(chunks.latest(file, "/tick", 10**8 - 1))[0] == 0
+
+
+def test_an_index_that_speaks_of_what_is_beyond_the_end_is_told(path: Path) -> None:
+    data = bytearray(path.read_bytes())
+    footer = len(data) - chunks.END
+    (at,) = struct.unpack_from("<Q", data, footer + 9)
+    while data[at] != chunks.CHUNK_INDEX:
+        at += 9 + int(struct.unpack_from("<Q", data, at + 1)[0])
+    struct.pack_into("<Q", data, at + 9 + 16, 2**63)
+    struct.pack_into("<I", data, footer + chunks.FOOT.size - 4, 0)  # no checksum
+    path.write_bytes(data)
+    with pytest.raises(RecordingError, match="the index speaks of a chunk beyond the end"):
+        list(latest(path))
+
+
 def test_what_is_not_asked_is_not_unpacked(path: Path) -> None:
     """Neither chunks after the time nor those further back than one goes."""
     every = [*places(path)]
