@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
 import signal
 import socket
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +18,8 @@ from click.testing import CliRunner
 
 from rplan.apps.cli import cli
 from rplan.apps.simulation import load_world, simulate
+from rplan.apps.viewer import server
+from rplan.apps.viewer.server import Viewer
 from rplan.apps.viewer.session import Session, WishError
 from rplan.apps.wiring import compile_file
 from sim.recording import Recorder, read, readings
@@ -210,6 +214,29 @@ def test_the_command_writes_what_stands_when_it_ends(tmp_path: Path) -> None:
     out, error = process.communicate(timeout=20)
     assert (process.returncode, out, error) == (0, f"ended at 0.1 s of simulated time\nwrote {path}\n", "")
     assert len(ticks(path)) == 2
+
+
+@pytest.mark.parametrize("full", [False, True])
+def test_the_command_says_what_it_wrote_or_could_not(
+    full: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "run.mcap"
+
+    async def watched(one: Session, _port: int, ready: Callable[[Viewer], None], _stop: asyncio.Event) -> None:
+        ready(Viewer(one))
+        one.wish({"do": "step", "ticks": 4})
+        if full:
+            monkeypatch.setattr(Recorder, "tick", no_space)
+        one.close()
+
+    def no_space(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(server, "watch", watched)
+    result = CliRunner().invoke(cli, ["view", str(FIND), "--record", str(path)])
+    assert result.stdout.endswith(f"ended at 0.5 s of simulated time\nwrote {path}\n")
+    assert (result.exit_code, result.stderr) == ((2, f"error: {path}: No space left on device\n") if full else (0, ""))
+    assert len(ticks(path)) == (5 if full else 6)
 
 
 def test_a_place_that_cannot_be_written_is_a_clear_error(tmp_path: Path) -> None:
