@@ -18,7 +18,8 @@ OVERLAPS = """(() => {
   const boxes = [...document.querySelectorAll('text')].map(t => [t.getBoundingClientRect(), t.textContent]), all = [];
   const flat = [...document.querySelectorAll('text')].map(t => !t.closest('[transform]'));
   const page = document.documentElement.getBoundingClientRect();
-  const beside = (a, b) => a.left >= b.right - 2 || a.top >= b.bottom - 4, aside = (a, b) => beside(a, b) || beside(b, a);
+  const beside = (a, b) => a.left >= b.right - 2 || a.top >= b.bottom - 4;
+  const aside = (a, b) => beside(a, b) || beside(b, a);
   boxes.forEach(([a, words], k) => {
     const out = a.left < page.left - 1 || a.right > page.right + 1 || a.bottom > page.bottom + 1;
     if (out) all.push('cut off: ' + words);
