@@ -120,7 +120,7 @@ class Reach:
                 return answer
             if answer:
                 return tick
-            if EASY <= tick and limit == MOST_TICKS and self._never(question, registers, tick):
+            if tick >= EASY and limit == MOST_TICKS and self._never(question, registers, tick):
                 return None
             tick += 1
             if tick == MOST_TICKS and limit == MOST_TICKS:
