@@ -14,15 +14,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from behaviours.competences.steer_clear import sectors_view, wanted_heading
+from behaviours.cores.geometry import moved
 from behaviours.cores.look_ahead import LookAheadSettings, carrot, way
 from behaviours.cores.pilot import PilotSettings, Surrounds, may_turn, safe, towards
+from behaviours.cores.steering import KEEP_OFF, Near, Place, sectors_view, wanted_heading
 from behaviours.cores.vfh_plus import Choice, VfhPlus, VfhPlusSettings
 from behaviours.cores.way_back import WayBack, WayBackSettings
-from behaviours.estimators.localisation import Localisation
-from behaviours.estimators.near_points import NearPoints
-from behaviours.estimators.sectors import KEEP_OFF
-from behaviours.estimators.surroundings import moved
 from behaviours.interface import STOP, Channels, Command, Drive, Floats, Pose, Reading, Report, View, wrap
 
 MAP = Pose(0.0, 0.0, 0.0)
@@ -52,8 +49,8 @@ class SteerByVfhPlus:
     def __init__(
         self,
         settings: SteerSettings,
-        near: NearPoints,
-        place: Localisation,
+        near: Near,
+        place: Place,
         known: Callable[[], bool],
         trail: Callable[[], Floats],
     ) -> None:

@@ -12,8 +12,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from behaviours.cores.geometry import moved
 from behaviours.estimators.localisation import Localisation
-from behaviours.estimators.surroundings import Surroundings, moved
+from behaviours.estimators.surroundings import Surroundings
 from behaviours.interface import Channels, Floats, Pose, Reading, Report, Scan
 
 MAP = Pose(0.0, 0.0, 0.0)

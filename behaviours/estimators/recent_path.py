@@ -12,9 +12,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from behaviours.cores.geometry import moved
 from behaviours.cores.recent_path import Trace, TraceSettings
 from behaviours.estimators.localisation import Localisation
-from behaviours.estimators.surroundings import moved
 from behaviours.interface import Channels, Floats, Pose, Reading, Report
 
 MAP = Pose(0.0, 0.0, 0.0)

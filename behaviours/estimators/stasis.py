@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from behaviours.cores.geometry import moved
 from behaviours.cores.stasis import (
     STILL,
     Cycle,
@@ -29,7 +30,7 @@ from behaviours.cores.stasis import (
 )
 from behaviours.estimators.localisation import Localisation
 from behaviours.estimators.recent_path import RecentPath
-from behaviours.estimators.surroundings import Surroundings, moved
+from behaviours.estimators.surroundings import Surroundings
 from behaviours.interface import Channels, Command, Drive, Floats, Odometry, Pose, Reading, Report
 
 SCANS = 3

@@ -16,11 +16,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from behaviours.cores.contour import ContourSettings, anchored, rolled, snapped
-from behaviours.cores.geometry import distance
+from behaviours.cores.geometry import distance, moved
 from behaviours.cores.hough import HoughSettings, Line, lines
 from behaviours.cores.orientation import FollowSettings, no_votes, tallied, tracked, wanted_heading
 from behaviours.estimators.localisation import Localisation
-from behaviours.estimators.surroundings import Surroundings, moved
+from behaviours.estimators.surroundings import Surroundings
 from behaviours.interface import Channels, Floats, Pose, Reading, Report, Vec2, wrap
 
 SHOWN_BAND = 0.15

@@ -15,13 +15,14 @@ from behaviours.competences.steer_clear import SteerClear
 from behaviours.cores.hull_paths import Hull, Motors
 from behaviours.cores.look_ahead import LookAheadSettings
 from behaviours.cores.pilot import PilotSettings
+from behaviours.cores.steering import KEEP_OFF
 from behaviours.cores.svfh import SvfhSettings
 from behaviours.cores.vfh_plus import VfhPlusSettings, is_blocked
 from behaviours.cores.way_back import WayBackSettings
 from behaviours.declaring import boolean, chosen, command, number, parameters, positive, settings_of
 from behaviours.estimators.goal_heading import GoalHeading
 from behaviours.estimators.near_points import NearPoints
-from behaviours.estimators.sectors import KEEP_OFF, Sectors
+from behaviours.estimators.sectors import Sectors
 from behaviours.interface import Function, Library, Offer, Parameter, Pose, Values, Workshop
 from behaviours.libraries.recent_path import recent_path
 from behaviours.libraries.sharing import localisation, surroundings

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from behaviours.catalogue import LIBRARIES
-from behaviours.competences.steer_clear import sectors_view
 from behaviours.cores.hull_paths import Hull, Motors, least_distance, paths
 from behaviours.cores.pilot import PilotSettings, Surrounds, may_turn, safe, towards
+from behaviours.cores.steering import sectors_view
 from behaviours.cores.way_back import WayBack, WayBackSettings
 from behaviours.interface import STOP, Compass, Drive, Odometry, Pose, Reading, Scan, Workshop, wrap
 from rplan.apps.simulation import World, simulate
