@@ -20,7 +20,7 @@ _TRACE = parameters(
     ("here", "m", "A point so near is where the robot is (chosen here)."),
     ("spacing", "m", "With `:preset modern` one point in this distance, whatever the time (chosen here)."),
     ("progress", "m", "`modern`: a robot that stays within this radius makes no progress (chosen here)."),
-    ("patience", "s", "`modern`: without progress for so long it is in a dead end, which is closed behind it (chosen here)."),
+    ("patience", "s", "`modern`: without progress for so long it is in a dead end, to be closed (chosen here)."),
 )
 _PRESET = Parameter(
     "preset", "symbol", "", "paper", "`paper`: forgets by time; `modern`: by distance, and remembers dead ends."
