@@ -64,7 +64,7 @@ class SteerByVfhPlus:
         self._out: float | None = None
         self._ahead: Floats = np.zeros((0, 2))
         self._looked = -math.inf
-        self._shown: View | None = None
+        self._shown: tuple[Choice, float] | None = None
 
     def start(self, reading: Reading, channels: Channels) -> None:
         self._begin()
@@ -75,7 +75,7 @@ class SteerByVfhPlus:
     def view(self) -> View | None:
         """The open directions of this tick, where it was stepped."""
         shown, self._shown = self._shown, None
-        return shown
+        return None if shown is None else sectors_view(~shown[0].blocked, shown[1])
 
     def step(self, reading: Reading, channels: Channels) -> tuple[Command, Report]:
         heading = wanted_heading(channels)
@@ -127,7 +127,7 @@ class SteerByVfhPlus:
         points = np.concatenate([*kept_off, self._trail()] if keep_off else kept_off)
         radius = abs(now.speed) / self.settings.pilot.max_turn_rate
         choice = self._vfh.choose(points, pose.theta, heading, radius)
-        self._shown = sectors_view(~choice.blocked, pose.theta)
+        self._shown = choice, pose.theta
         return choice
 
     def _blocked(self, now: Drive, stamp: float) -> Drive | None:

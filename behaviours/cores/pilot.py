@@ -60,10 +60,12 @@ class Surrounds:
 def towards(direction: float, now: Drive, seen: Surrounds, settings: PilotSettings) -> Drive | None:
     """The motion of the hull towards a direction [rad, robot frame]; None where every one is dangerous."""
     points = reachable_points(seen.points, now, settings)
-    gap = float(settings.hull.distance(points[:, 0], points[:, 1]).min(initial=math.inf))
+    gap = _gap(points, settings)
     turn = _clip(settings.gain * direction, settings.max_turn_rate)
     speed = 0.0 if abs(direction) > settings.on_the_spot else wanted_speed(direction, seen.points, settings)
     tried = np.array([(speed * share, turn) for share in (SHARES if speed > 0 else (0.0,))])
+    if speed > 0 and _free(tried[:1], now, points, gap, settings)[0]:
+        return Drive(speed, turn)
     free = _free(tried, now, points, gap, settings)
     free[-1] &= turns_free(direction, points, settings)
     if free.any():
@@ -76,8 +78,13 @@ def towards(direction: float, now: Drive, seen: Surrounds, settings: PilotSettin
 def safe(wanted: Drive, now: Drive, points: Floats, settings: PilotSettings) -> bool:
     """Whether the hull stays free while a command is held for a while and then braked for."""
     points = reachable_points(points, now, settings)
-    gap = float(settings.hull.distance(points[:, 0], points[:, 1]).min(initial=math.inf))
+    gap = _gap(points, settings)
     return bool(_free(np.array([(wanted.speed, wanted.turn_rate)]), now, points, gap, settings)[0])
+
+
+def _gap(points: Floats, settings: PilotSettings) -> float:
+    """[m] from the hull as it stands to the points."""
+    return float(settings.hull.distance(points[:, 0], points[:, 1]).min(initial=math.inf)) if len(points) else math.inf
 
 
 def may_turn(points: Floats, settings: PilotSettings) -> bool:
@@ -97,7 +104,8 @@ def turns_free(direction: float, points: Floats, settings: PilotSettings) -> boo
 
 def wanted_speed(direction: float, points: Floats, settings: PilotSettings) -> float:
     """[m/s]: less when the direction lies aside, and less the nearer something is before the hull or beside it."""
-    ahead = points[points[:, 0] > 0.0]
+    x, y, far = points[:, 0], points[:, 1], settings.hull.reach + settings.margin + settings.roomy
+    ahead = points[(x > 0.0) & (x < far) & (np.abs(y) < far)]
     room = float(settings.hull.distance(ahead[:, 0], ahead[:, 1]).min(initial=math.inf)) - settings.margin
     share = settings.tight + (1.0 - settings.tight) * max(0.0, min(1.0, room / settings.roomy))
     return settings.cruise * max(0.0, math.cos(direction)) * share
@@ -121,6 +129,8 @@ def _free(
 
 
 def _gaps(wanted: Floats, now: Drive, points: Floats, settings: PilotSettings) -> Floats:
+    if not len(points):
+        return np.full(len(wanted), math.inf)
     return least_distance(paths(now, wanted, settings.motors), points, settings.hull)
 
 

@@ -76,6 +76,16 @@ def test_a_brain_steps_notes_and_forgets_with_a_reset() -> None:
     assert (brain.tick.number, brain.tick.started) == (0, ("stop",))
 
 
+@pytest.mark.parametrize("looked_at", [True, False])
+def test_views_are_asked_where_somebody_looks_at_them(looked_at: bool) -> None:
+    plan = compile_source(Source("placed.rplan", PLAN.replace("(use robot)", "(use robot) (use localisation)")))
+    brain = PlanBrain(plan, looked_at=looked_at)
+    assert brain.step(reading(0.0, 0)) == STOP
+    assert brain.tick is not None
+    assert ("believed-pose" in brain.tick.shown) is looked_at
+    assert ("believed-pose" in brain.note()) is looked_at
+
+
 def test_a_recording_says_of_its_plan_what_a_reader_needs() -> None:
     header = plan_header(compile_source(Source("some/where/still.rplan", PLAN)))
     assert header == {
