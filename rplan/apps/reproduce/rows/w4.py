@@ -39,10 +39,17 @@ AGAIN = (
 
 def cases(seeds: int) -> tuple[Case, ...]:
     """Every position with every seed, each with other escapes."""
+    drawn = {(k, seed): 1 + seed * len(POSITIONS) + k for k in range(len(POSITIONS)) for seed in range(seeds)}
     return tuple(
-        Case(name, PLAN, WORLD, (seed,), settings, (Change("stasis", "seed", float(1 + seed * len(POSITIONS) + k)),))
-        for k, (name, settings) in enumerate(POSITIONS)
-        for seed in range(seeds)
+        Case(
+            f"{POSITIONS[k][0]}, escapes {chance}",
+            PLAN,
+            WORLD,
+            (seed,),
+            POSITIONS[k][1],
+            (Change("stasis", "seed", float(chance)),),
+        )
+        for (k, seed), chance in drawn.items()
     )
 
 
