@@ -24,14 +24,14 @@ def cloud(seed, count=361):
 
 
 def literally(points):
-    """Each reading increments all directions within k / r of its own."""
+    """Each reading increments all wedges that reach within k / r of it."""
     counts = np.zeros(72, dtype=int)
     for x, y in points:
         away = math.hypot(x, y)
         if away <= 4.0:
             for i in range(72):
                 off = abs(math.remainder(i * WIDTH - math.atan2(y, x), math.tau))
-                counts[i] += off <= min(math.pi, 0.4 / away) + 1e-9
+                counts[i] += off - WIDTH / 2 <= 0.4 / away + 1e-9
     return counts
 
 
@@ -50,7 +50,17 @@ def test_the_histogram_counts_readings_within_k_over_r(seed):
 def test_a_reading_blocks_more_the_nearer_it_is():
     blocked = [int((histogram(np.array([at(0.0, r)]), SETTINGS) > 0).sum()) for r in (3.9, 2.0, 1.0, 0.5, 0.2)]
     assert blocked == sorted(blocked)
-    assert blocked == [3, 5, 9, 19, 45]
+    assert blocked == [3, 5, 11, 19, 47]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_every_heading_in_an_open_wedge_keeps_the_clearance(seed):
+    points = cloud(seed, 40)
+    points = points[np.hypot(*points.T) <= 4.0]
+    for heading in np.linspace(-math.pi, math.pi, 500):
+        if histogram(points, SETTINGS)[round(heading / WIDTH) % 72] == 0:
+            off = [abs(math.remainder(heading - math.atan2(y, x), math.tau)) * math.hypot(x, y) for x, y in points]
+            assert min(off) >= 0.4 - 1e-6
 
 
 def test_a_reading_that_is_all_but_inside_the_robot_blocks_every_direction_once():
