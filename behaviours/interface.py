@@ -398,7 +398,7 @@ world. Kinds, lengths in metres and angles in radians:
 - `points`: `at` [[x, y], …]; `lines`: `at` [[x, y, x, y], …]; `heading`: `at`, a direction from the robot;
 - `sectors`: `open`, a text of 0 and 1 of equal sectors, the first from bearing `first` on, counter-clockwise;
 - `grid`: a patch of a map: `cell`, corner `x`, `y`, `columns`, `rows`, `data`: base64 of zlib of one byte a cell, rows
-  upwards, 0 … 100 the probability [%] that it is occupied, 255 unknown.
+  upwards, 0 … 100 the probability [%] that it is occupied, 255 unknown, 254 as before.
 """
 
 
@@ -448,10 +448,14 @@ Values = Mapping[str, float | bool | str]
 
 @dataclass(frozen=True, slots=True)
 class Library:
-    """A named set of behaviours: the words it offers, its parameters, and how it comes to life."""
+    """A named set of behaviours: the words it offers, its parameters, and how it comes to life.
+
+    works_unasked: a plan may use it for what it does of itself, and ask none of its words.
+    """
 
     name: str
     doc: str
     functions: tuple[Function, ...]
     parameters: tuple[Parameter, ...]
     build: Callable[[Values, Workshop], Offer]
+    works_unasked: bool = False

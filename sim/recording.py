@@ -1,8 +1,9 @@
 """A run on disk: one MCAP file with a header, one JSON object a tick, what the robot sensed, and a view for viewers.
 
 Takes: a header, and tick by tick the state of the world, the brain's note (JSON text) and the Reading. Gives: a file
-that is the same to the byte for the same run, since every stamp in it is simulated; and the ways back, `read` and
-`readings`. Leaves alone: what world and brain put into their parts, the judgement of the run, and how it is shown.
+that is the same to the byte for the same run, since every stamp in it is simulated; and the ways back: `read`,
+`readings` and `latest`. Leaves alone: what world and brain put into their parts, the judgement of the run, how it is
+shown.
 
 Topics: `/header` once and `/tick` (JSON; tick n carries `tick`, `t` [s], `world`, `plan`), `/reading` (JSON, all that
 was sensed to the last bit), and the typed channels of `viewing.py`, so that any MCAP viewer can play the file as well.
@@ -12,7 +13,6 @@ from __future__ import annotations
 
 import json
 import math
-import struct
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -23,14 +23,13 @@ from typing import Self
 
 from foxglove import Channel, Context, open_mcap
 from foxglove.mcap import MCAPCompression, MCAPWriteOptions
-from mcap.exceptions import McapError
-from mcap.records import Channel as ChannelRecord
-from mcap.records import McapRecord, Message
-from mcap.stream_reader import CRCValidationError, StreamReader
-from zstandard import ZstdError
+from mcap.records import McapRecord
+from mcap.stream_reader import StreamReader
 
 from behaviours.interface import Reading
+from sim import chunks
 from sim import readings as texts
+from sim.chunks import BROKEN, MAGIC
 from sim.readings import ReadingTexts
 from sim.viewing import View
 
@@ -42,9 +41,6 @@ CHUNK = 16 * 1024
 
 KEEP_S = 0.2
 """After so much simulated time [s] a chunk is closed and written: what a run that is killed may lose."""
-
-MAGIC = b"\x89MCAP0\r\n"
-BROKEN = (McapError, CRCValidationError, struct.error, ZstdError, EOFError, ValueError, MemoryError, OverflowError)
 
 Json = Mapping[str, object]
 
@@ -111,6 +107,7 @@ TICK_SCHEMA = {
             },
         },
         "plan": {"type": "object"},
+        "by_hand": {"type": "object"},
     },
 }
 READING_SCHEMA = {
@@ -156,14 +153,18 @@ class Recorder:
             self._file.close()
             raise
 
-    def tick(self, t: float, world: Json, note_json: str, reading: Reading | None = None) -> None:
+    def tick(
+        self, t: float, world: Json, note_json: str, reading: Reading | None = None, by_hand: Json | None = None
+    ) -> None:
         """Append one tick: simulated time [s], the world's snapshot, the brain's note as JSON text ("null": none).
 
-        reading: what the robot sensed in it; where it is given, `readings` gives it back.
+        reading: what the robot sensed in it; where it is given, `readings` gives it back. by_hand: what someone made
+        otherwise who watched; where there is nothing, it is left out.
         """
         nanoseconds = round(t * 1e9)
         note = _finite_text(note_json)
-        text = f'{{"tick":{self._count},"t":{json_text(t)},"world":{json_text(world)},"plan":{note}}}'
+        more = f',"by_hand":{json_text(by_hand)}' if by_hand else ""
+        text = f'{{"tick":{self._count},"t":{json_text(t)},"world":{json_text(world)},"plan":{note}{more}}}'
         with _as_oserror():
             self._tick.log(text.encode(), log_time=nanoseconds)
             if reading is not None:
@@ -246,14 +247,15 @@ def records(path: Path) -> Iterator[McapRecord]:
 
 def _messages(path: Path, topic: str, cut_short: bool) -> Iterator[bytes]:
     """The messages of a topic in file order; where the file was cut short it ends quietly."""
-    channels: dict[int, str] = {}
+    with _told(path, cut_short):
+        yield from (data for _, data in chunks.messages(path, topic))
+
+
+@contextmanager
+def _told(path: Path, cut_short: bool) -> Iterator[None]:
+    """What is broken is said, unless it is the end of a file that was cut short."""
     try:
-        for record in records(path):
-            match record:
-                case ChannelRecord():
-                    channels[record.id] = record.topic
-                case Message() if channels.get(record.channel_id) == topic:
-                    yield record.data
+        yield
     except BROKEN as fault:
         if not cut_short:
             advice = "record the run again, or save its beginning by `rplan repair`"
@@ -311,3 +313,16 @@ def readings(path: Path | str) -> Iterator[Reading]:
         raise RecordingError(f"{path} holds no readings: record the run again with this rplan")
     yield first
     yield from found
+
+
+def latest(path: Path | str, until: float = math.inf) -> Iterator[str]:
+    """The JSON texts of the ticks up to a time [s], the latest first; what is later is not unpacked.
+
+    Raises RecordingError where the file is no recording or is damaged where it is looked at; OSError where it cannot
+    be opened.
+    """
+    path = Path(path)
+    cut_short = _is_cut_short(path)
+    with _told(path, cut_short):
+        for _, data in chunks.latest(path, "/tick", until * 1e9 + 0.5, cut_short=cut_short):
+            yield data.decode()

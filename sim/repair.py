@@ -15,7 +15,8 @@ from typing import Any
 from mcap.records import Channel, Footer, Header, McapRecord, Message, Schema
 from mcap.writer import CompressionType, Writer
 
-from sim.recording import BROKEN, CHUNK, RecordingError, read, records
+from sim.chunks import BROKEN
+from sim.recording import CHUNK, RecordingError, read, records
 
 
 @dataclass(slots=True)

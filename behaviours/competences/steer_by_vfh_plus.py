@@ -14,29 +14,33 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from behaviours.competences.steer_clear import sectors_view, wanted_heading
+from behaviours.cores.geometry import moved
+from behaviours.cores.look_ahead import LookAheadSettings, carrot, way
 from behaviours.cores.pilot import PilotSettings, Surrounds, may_turn, safe, towards
+from behaviours.cores.steering import KEEP_OFF, Near, Place, sectors_view, wanted_heading
 from behaviours.cores.vfh_plus import Choice, VfhPlus, VfhPlusSettings
 from behaviours.cores.way_back import WayBack, WayBackSettings
-from behaviours.estimators.localisation import Localisation
-from behaviours.estimators.near_points import NearPoints
-from behaviours.estimators.sectors import KEEP_OFF
-from behaviours.estimators.surroundings import moved
 from behaviours.interface import STOP, Channels, Command, Drive, Floats, Pose, Reading, Report, View, wrap
 
 MAP = Pose(0.0, 0.0, 0.0)
+LOOKS, CARROT = 0.2, 0.6  # [s] between two looks ahead; [m] to the place of the way that is made for
+SQUEEZE = 0.35
+"""Share of cruise out of where the hull cannot turn."""
 BACKWARDS = (0.5, 0.25, 0.12)
 """Shares of cruise at which the way back is tried."""
 
 
 @dataclass(frozen=True, slots=True)
 class SteerSettings:
-    """left: where to turn when nothing is open, and which of two equally good directions is taken."""
+    """left: where to turn when nothing is open, and which of two equally good directions is taken. ahead: None for VFH+
+    alone; else the way through what is seen is found first, and VFH+ goes along it.
+    """
 
     choice: VfhPlusSettings = field(default_factory=VfhPlusSettings)
     pilot: PilotSettings = field(default_factory=PilotSettings)
     way_back: WayBackSettings = field(default_factory=WayBackSettings)
     left: bool = True
+    ahead: LookAheadSettings | None = None
 
 
 class SteerByVfhPlus:
@@ -45,8 +49,8 @@ class SteerByVfhPlus:
     def __init__(
         self,
         settings: SteerSettings,
-        near: NearPoints,
-        place: Localisation,
+        near: Near,
+        place: Place,
         known: Callable[[], bool],
         trail: Callable[[], Floats],
     ) -> None:
@@ -57,8 +61,10 @@ class SteerByVfhPlus:
     def _begin(self) -> None:
         self._vfh = VfhPlus(self.settings.choice, self.settings.left)
         self._way = WayBack(self.settings.way_back)
-        self._turning = -math.inf
-        self._shown: View | None = None
+        self._out: float | None = None
+        self._ahead: Floats = np.zeros((0, 2))
+        self._looked = -math.inf
+        self._shown: tuple[Choice, float] | None = None
 
     def start(self, reading: Reading, channels: Channels) -> None:
         self._begin()
@@ -69,7 +75,7 @@ class SteerByVfhPlus:
     def view(self) -> View | None:
         """The open directions of this tick, where it was stepped."""
         shown, self._shown = self._shown, None
-        return shown
+        return None if shown is None else sectors_view(~shown[0].blocked, shown[1])
 
     def step(self, reading: Reading, channels: Channels) -> tuple[Command, Report]:
         heading = wanted_heading(channels)
@@ -89,8 +95,10 @@ class SteerByVfhPlus:
     def _forward(self, heading: float, now: Drive, stamp: float, keep_off: bool) -> tuple[Command, Report]:
         pose, pilot = self._place.pose, self.settings.pilot
         self._way.advance(pose, stamp)
-        choice = self._choose(heading, now, keep_off)
+        choice = self._choose(self._looked_ahead(heading, stamp), now, keep_off)
         direction = choice.direction
+        if self._out is not None:
+            return self._command(self._straight_out(now)), Report(details={"doing": "straight out"})
         if self._way.is_stalled(stamp):
             self._way.turn_back(pose, pose.theta if direction is None else direction, stamp)
         if direction is None:
@@ -99,22 +107,54 @@ class SteerByVfhPlus:
         drive = towards(wrap(direction - pose.theta), now, seen, pilot)
         return self._command(drive), Report(details={"direction": round(direction, 3)})
 
+    def _looked_ahead(self, heading: float, stamp: float) -> float:
+        """The direction [rad, map frame] in which the way through what is seen begins."""
+        if self.settings.ahead is None:
+            return heading
+        pose = self._place.pose
+        here = np.array((pose.x, pose.y))
+        if stamp - self._looked >= LOOKS:
+            seen = moved(self._near.points, pose, MAP)
+            points = np.concatenate([seen, self._way.dead_ends]) - here
+            self._ahead = way(points, heading, self._ahead - here, self.settings.ahead) + here
+            self._looked = stamp
+        direction = carrot(self._ahead, pose, CARROT)
+        return heading if direction is None else direction
+
     def _choose(self, heading: float, now: Drive, keep_off: bool) -> Choice:
         pose = self._place.pose
         kept_off = [self._near.points, moved(self._way.dead_ends, MAP, pose)]
         points = np.concatenate([*kept_off, self._trail()] if keep_off else kept_off)
         radius = abs(now.speed) / self.settings.pilot.max_turn_rate
         choice = self._vfh.choose(points, pose.theta, heading, radius)
-        self._shown = sectors_view(~choice.blocked, pose.theta)
+        self._shown = choice, pose.theta
         return choice
 
     def _blocked(self, now: Drive, stamp: float) -> Drive | None:
         """Nothing is open: turn where that shows something new and the hull is free, else go back."""
         pilot = self.settings.pilot
         if self._near.sees_all or not may_turn(self._near.points, pilot):
-            self._way.turn_back(self._place.pose, self._place.heading, stamp)
-            return None
+            if self._way.is_known:
+                self._way.turn_back(self._place.pose, self._place.heading, stamp)
+                return None
+            self._out = self._roomiest()
+            return self._straight_out(now)
         return Drive(0.0, pilot.max_turn_rate / 2 if self.settings.left else -pilot.max_turn_rate / 2)
+
+    def _roomiest(self) -> float:
+        """1 for straight ahead or -1 for straight back, where the hull may go further."""
+        points, half = self._near.points, self.settings.pilot.hull.half_width
+        lane = points[np.abs(points[:, 1]) < half, 0]
+        ahead, behind = lane[lane > 0.0].min(initial=math.inf), -lane[lane < 0.0].max(initial=-math.inf)
+        return 1.0 if ahead > behind or not self._near.sees_all else -1.0
+
+    def _straight_out(self, now: Drive) -> Drive | None:
+        """Slowly on in the direction begun, until the hull may turn or must stop."""
+        pilot = self.settings.pilot
+        out = Drive((self._out or 0.0) * SQUEEZE * pilot.cruise, 0.0)
+        if may_turn(self._near.points, pilot) or not safe(out, now, self._near.points, pilot):
+            self._out = None
+        return None if self._out is None else out
 
     def _back(self, now: Drive, stamp: float) -> Drive | None:
         """Backwards towards the next place of the way back; None when it has come to its end."""

@@ -6,30 +6,29 @@ drive, and what it chose. Leaves alone: where the heading comes from.
 
 from __future__ import annotations
 
-import math
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from behaviours.cores.svfh import chosen_direction, drive, front_range
-from behaviours.estimators.localisation import Localisation
-from behaviours.estimators.sectors import KEEP_OFF, Sectors
-from behaviours.estimators.surroundings import Surroundings
+from behaviours.cores.steering import KEEP_OFF, Around, Place, sectors_view, wanted_heading
+from behaviours.cores.svfh import SvfhSettings, chosen_direction, drive, front_range
 from behaviours.interface import STOP, Channels, Command, Reading, Report, View, wrap
 
 
-def wanted_heading(channels: Channels) -> float | None:
-    """The heading [rad, map frame] on the channel `heading`; None where there is none."""
-    heading = channels.get("heading")
-    if isinstance(heading, bool) or not isinstance(heading, int | float) or not math.isfinite(heading):
-        return None
-    return float(heading)
+class OpenSectors(Protocol):
+    """The directions that are open."""
+
+    @property
+    def settings(self) -> SvfhSettings: ...
+
+    def open(self, keep_off: bool, /) -> NDArray[np.bool_]: ...
 
 
 class SteerClear:
     """left: where to turn when nothing is open, and which of two equally good directions is taken."""
 
-    def __init__(self, sectors: Sectors, around: Surroundings, place: Localisation, left: bool) -> None:
+    def __init__(self, sectors: OpenSectors, around: Around, place: Place, left: bool) -> None:
         self._sectors, self._around, self._place, self._left = sectors, around, place, left
         self._shown: View | None = None
 
@@ -58,12 +57,3 @@ class SteerClear:
         """The open directions of this tick, where it was stepped."""
         shown, self._shown = self._shown, None
         return shown
-
-
-def sectors_view(open_: NDArray[np.bool_], turned: float = 0.0) -> View:
-    """Direction i is centred on i / n of a turn, so the first begins half a sector to its right.
-
-    turned [rad]: the robot frame against the one of the directions.
-    """
-    text = "".join("1" if free else "0" for free in open_.tolist())
-    return {"kind": "sectors", "frame": "robot", "first": round(wrap(-math.pi / len(open_) - turned), 6), "open": text}

@@ -1,11 +1,12 @@
 """The way along a contour: a disc of the stand-off rolls along the points.
 
-Takes: points, and the place where the disc touched last. Gives: the direction in which it rolls on, and where it touches
-then. Leaves alone: what the points belong to. All of it is for a contour to the left.
+Takes: points, and the place where the disc touched last. Gives: the direction in which it rolls on, and where it
+touches then. Leaves alone: what the points belong to. All of it is for a contour to the left.
 
-Chosen here. Gaps that the disc does not fit through are passed by; at the end of a wall it rolls round the corner, before
-a wall ahead it turns away in time, and what it touched last tells which contour is followed. Nearer to it or farther
-from it than the stand-off, the law of Yamauchi 2005 leads back, with the nearest point for the wall.
+Chosen here. Gaps that the disc does not fit through are passed by; at the end of a wall it rolls round the corner,
+before a wall ahead it turns away in time, and what it touched last tells which contour is followed. Nearer to it or
+farther from it than the stand-off, the law of Yamauchi 2005 leads back, with the nearest point for the wall; too near,
+the disc rolls from the place where it would just touch.
 """
 
 from __future__ import annotations
@@ -21,24 +22,23 @@ from behaviours.interface import Floats, Vec2, wrap
 
 @dataclass(frozen=True, slots=True)
 class ContourSettings:
-    """look_ahead, foresight, snap, leap, least [m]; regain [rad/m]; steepest [rad].
+    """look_ahead, snap, leap, least [m]; regain [rad/m]; steepest [rad].
 
-    look_ahead: how far the disc is swept; foresight: the tangent is that of a place so far ahead; regain, steepest: how
-    the stand-off is regained; snap: points so near to a line lie on it; leap: the place of contact may move by so much
-    from scan to scan; shrink: a disc that fits nowhere is made smaller by this share until one fits, at the smallest
-    `least`.
+    look_ahead: how far the disc is swept; regain, steepest: how the stand-off is regained; snap: points so near to a
+    line lie on it; leap: the place of contact may move by so much from scan to scan; shrink: a disc that fits nowhere
+    is made smaller by this share until one fits, at the smallest `least`.
     """
 
     look_ahead: float = 2.5
-    regain: float = 0.8
+    regain: float = 1.2
     steepest: float = math.pi / 4
-    foresight: float = 0.25
     snap: float = 0.07
     leap: float = 1.0
     shrink: float = 0.15
     least: float = 0.3
 
 
+NO_LENGTH = 1e-6
 BESIDE = math.radians(200.0)
 """The contour lies between straight ahead and so far to the left."""
 
@@ -76,38 +76,38 @@ def anchored(points: Floats, contact: Vec2, leap: float) -> Vec2 | None:
 
 def rolled(points: Floats, contact: Vec2, stand_off: float, settings: ContourSettings) -> Rolled:
     """On along the contour of points (n, 2) [m], robot frame, from where the disc of radius stand_off [m] touched."""
-    reach, bearing = np.hypot(points[:, 0], points[:, 1]), np.arctan2(points[:, 1], points[:, 0])
-    start = math.atan2(contact[1], contact[0])
-    ahead, touched = _roll(reach, bearing, start, _radius(reach, contact, stand_off, settings), settings)
-    beside = (bearing - ahead) % math.tau <= BESIDE
-    touches = contact if touched is None else (float(points[touched, 0]), float(points[touched, 1]))
+    reach = np.hypot(points[:, 0], points[:, 1])
+    ahead, touched = _roll(points, reach, contact, stand_off, settings)
+    touches = contact if touched is None else _at(points, touched)
+    beside = (np.arctan2(points[:, 1], points[:, 0]) - ahead) % math.tau <= BESIDE
     if not beside.any():
         return Rolled(wrap(ahead), touches, touches)
-    contour = points[beside]
-    off = np.hypot(contour[:, 0] - settings.foresight, contour[:, 1])
-    x, y = contour[int(off.argmin())]
-    tangent = _tangent(float(off.min()), math.atan2(y, x - settings.foresight), stand_off, settings)
-    nearest = contour[int(reach[beside].argmin())]
+    nearest = _at(points, int(np.where(beside, reach, math.inf).argmin()))
+    off = settings.regain * (math.hypot(*nearest) - stand_off)
+    tangent = math.atan2(nearest[1], nearest[0]) - math.pi / 2 + max(-settings.steepest, min(settings.steepest, off))
     direction = tangent if wrap(tangent - ahead) < 0.0 else ahead
-    return Rolled(wrap(direction), touches, (float(nearest[0]), float(nearest[1])))
+    return Rolled(wrap(direction), touches, nearest)
 
 
-def _tangent(distance: float, bearing: float, stand_off: float, s: ContourSettings) -> float:
-    return bearing - math.pi / 2 + max(-s.steepest, min(s.steepest, s.regain * (distance - stand_off)))
-
-
-def _radius(reach: Floats, contact: Vec2, stand_off: float, s: ContourSettings) -> float:
-    """Of the disc: the stand-off, or as much as leads there no steeper than `steepest`."""
-    nearest = min(float(reach.min()), math.hypot(*contact))
-    return max(stand_off, nearest - s.look_ahead * math.sin(s.steepest))
+def _at(points: Floats, index: int) -> Vec2:
+    return float(points[index, 0]), float(points[index, 1])
 
 
 def _roll(
-    reach: Floats, bearing: Floats, start: float, radius: float, s: ContourSettings
+    points: Floats, reach: Floats, contact: Vec2, stand_off: float, s: ContourSettings
 ) -> tuple[float, int | None]:
-    """Direction in which the disc gets past the contour, and the point that it touches; smaller where it fits nowhere."""
+    """Direction in which the disc gets past the contour, and the point that it touches; smaller where it fits nowhere.
+
+    Farther away than the stand-off the disc is as large as leads there no steeper than `steepest`.
+    """
+    nearest = int(reach.argmin())
+    gap = float(reach[nearest])
+    radius = max(stand_off, min(gap, math.hypot(*contact)) - s.look_ahead * math.sin(s.steepest))
     while True:
-        swept, touched = _swept(reach, bearing, start, radius, s.look_ahead)
+        away = max(0.0, radius - gap) / max(gap, NO_LENGTH) * points[nearest]
+        x, y = (points + away).T
+        start = math.atan2(contact[1] + away[1], contact[0] + away[0])
+        swept, touched = _swept(np.hypot(x, y), np.arctan2(y, x), start, radius, s.look_ahead)
         if swept < math.tau:
             return start - swept, touched
         if radius <= s.least:

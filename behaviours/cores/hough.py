@@ -49,12 +49,12 @@ def _normals() -> tuple[Floats, Floats]:
 
 
 _COS, _SIN = _normals()
-_BLOCK = 18
+_BLOCK = 30
 _TABLES = [
     np.array([_COS[first : first + _BLOCK], _SIN[first : first + _BLOCK]], dtype=np.float32) / np.float32(BIN)
     for first in range(0, HALF, _BLOCK)
 ]
-_OFFSETS = (np.arange(_BLOCK) * _ROW + RANGES + 1).astype(np.int64)
+_OFFSETS = (np.arange(_BLOCK) * _ROW + RANGES + 1).astype(np.int32)
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,12 +83,14 @@ def votes(points: Floats) -> NDArray[np.int32]:
     """
     narrow = points.astype(np.float32)
     counted = np.empty((2 * HALF, RANGES), dtype=np.int32)
+    offsets = np.tile(_OFFSETS, (len(points), 1))
     for first, table in zip(range(0, HALF, _BLOCK), _TABLES, strict=True):
         signed = narrow @ table
         np.clip(signed, -_FAR, _FAR, out=signed)
         cells = signed.astype(np.int32)
         cells += signed.view(np.int32) >> 31  # bin 0 of the opposite normal is -1
-        block = np.bincount((cells + _OFFSETS).ravel(), minlength=_BLOCK * _ROW).reshape(_BLOCK, _ROW)
+        cells += offsets
+        block = np.bincount(cells.ravel(), minlength=_BLOCK * _ROW).reshape(_BLOCK, _ROW)
         counted[first : first + _BLOCK] = block[:, RANGES + 1 : -1]
         counted[first + HALF : first + HALF + _BLOCK] = block[:, RANGES:0:-1]
     return counted
@@ -104,8 +106,7 @@ def lines(points: Floats, settings: HoughSettings) -> tuple[Line, ...]:
     normals = [peak[0] for peak in peaks]
     n, rho = np.stack([_COS[normals], _SIN[normals]], axis=1), np.array([(peak[1] + 0.5) * BIN for peak in peaks])
     if settings.refine:
-        x, y = points.T
-        moments = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y])
+        moments = _moments(points)
         for band in (BIN, settings.band):
             n, rho = _fitted(moments, n, rho, band)
     bearings = np.arctan2(n[:, 1], n[:, 0]).tolist()
@@ -144,15 +145,31 @@ def _wipe(counted: NDArray[np.int32], normal: int, first: int, end: int) -> None
         counted[: high - 2 * HALF, first:end] = 0
 
 
+def _moments(points: Floats) -> Floats:
+    """(6, m): 1, x, y, xx, xy, yy of each point."""
+    made = np.empty((6, len(points)))
+    made[0] = 1.0
+    made[1:3] = points.T
+    np.multiply(made[1], made[1:3], out=made[3:5])
+    np.multiply(made[2], made[2], out=made[5])
+    return made
+
+
 def _fitted(moments: Floats, n: Floats, rho: Floats, band: float) -> tuple[Floats, Floats]:
-    """Lines of least squares through the points within `band` of lines; n (k, 2) unit normals, rho (k,)."""
-    near = np.abs(n @ moments[1:3] - rho[:, None]) <= band
-    count, sx, sy, sxx, sxy, syy = moments @ near.T.astype(np.float64)
-    few = count < 3.0
-    count[few] = 1.0
-    mx, my = sx / count, sy / count
-    along = 0.5 * np.arctan2(2.0 * (sxy / count - mx * my), (sxx - syy) / count - mx * mx + my * my)
-    fitted = np.stack([-np.sin(along), np.cos(along)], axis=1)
-    fitted[(fitted * n).sum(axis=1) < 0.0] *= -1.0
-    fitted[few] = n[few]
-    return fitted, np.where(few, rho, fitted[:, 0] * mx + fitted[:, 1] * my)
+    """Lines of least squares through the points within `band` of lines; n (k, 2) unit normals, rho (k,).
+
+    A line that has lost its points gets rho 0.
+    """
+    off = n @ moments[1:3]
+    off -= rho[:, None]
+    near = (np.abs(off, out=off) <= band).astype(np.float64)
+    sums = moments @ near.T
+    count = sums[0]
+    some = np.maximum(count, 1.0)
+    mx, my, sxy = sums[1] / some, sums[2] / some, sums[4] / some
+    along = 0.5 * np.arctan2(2.0 * (sxy - mx * my), (sums[3] - sums[5]) / some - mx * mx + my * my)
+    fitted = np.empty((2, len(rho)))
+    np.negative(np.sin(along), out=fitted[0])
+    np.cos(along, out=fitted[1])
+    reach = fitted[0] * mx + fitted[1] * my
+    return (fitted * np.copysign(1.0, reach)).T, np.where(count < 3.0, 0.0, np.abs(reach))

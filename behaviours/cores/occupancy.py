@@ -24,8 +24,14 @@ Bytes = NDArray[np.uint8]
 UNKNOWN = 255
 """Among percents: no scan has told of the cell."""
 
+UNEVEN = 1.0001
+"""Beams that pass weigh this much more, so that no evidence adds up to just 0, which stands for none."""
+
 TILE = 64
 """Cells by which the grid grows, to each side that needs it."""
+
+FEW = 64
+"""So many beams are followed at once: small arrays cost no new pages of memory."""
 
 MOST = 2048
 """A cell so many cells from the origin along x or y is not kept, 410 m with cells of 0.2 m: the memory is bounded."""
@@ -36,7 +42,8 @@ class OccupancySettings:
     """cell: side [m]. reach [m]: what lies beyond is left out.
 
     hit, passed: the probability of a cell in which a beam ended, or through which it went, if that is all that is
-    known. surest: no cell gets nearer to 0 or 1 than this is to 1.
+    known. surest: no cell gets nearer to 0 or 1 than this is to 1. spare: so many cells before its end a beam stops to
+    free what it passes, so that beams that graze a wall do not wipe it out.
     """
 
     cell: float = 0.2
@@ -44,6 +51,7 @@ class OccupancySettings:
     passed: float = 0.4
     surest: float = 0.97
     reach: float = 20.0
+    spare: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +117,7 @@ class OccupancyGrid:
         self.settings = settings
         self.odds = Plane(np.float32, 0.0)
         self.known = 0
-        self._hit, self._passed = np.float32(logit(settings.hit)), np.float32(logit(settings.passed))
+        self._hit, self._passed = np.float32(logit(settings.hit)), np.float32(UNEVEN * logit(settings.passed))
         self._most = np.float32(logit(settings.surest))
 
     @property
@@ -126,13 +134,16 @@ class OccupancyGrid:
         cell = self.settings.cell
         x0, y0 = eye[0] / cell - window.column, eye[1] / cell - window.row
         changes = np.zeros(window.rows * window.columns, dtype=np.float32)
-        changes[_passed(x0, y0, bearings, ranges / cell, window)] = self._passed
+        free = np.where(ended, np.maximum(ranges / cell - self.settings.spare, 0), ranges / cell).astype(np.float32)
+        for some in range(0, ranges.size, FEW):
+            part = slice(some, some + FEW)
+            changes[_passed(x0, y0, bearings[part], free[part], window)] = self._passed
         changes[_ends(x0, y0, bearings[ended], ranges[ended] / cell, window)] = self._hit
         odds = self.odds.at(window)
-        before = np.count_nonzero(odds)
-        odds += changes.reshape(window.rows, window.columns)
+        told = changes.reshape(window.rows, window.columns)
+        self.known += int(np.count_nonzero((odds == 0) & (told != 0)))
+        odds += told
         np.clip(odds, -self._most, self._most, out=odds)
-        self.known += int(np.count_nonzero(odds) - before)
 
     def percents(self, region: Region) -> Bytes:
         """(rows, columns) of probabilities [%], `UNKNOWN` where no scan told; the region may go beyond the grid."""
@@ -161,23 +172,30 @@ def _within(eye: tuple[float, float], far: float, cell: float) -> Region | None:
     return Region(column, row, side, side)
 
 
-def _passed(x0: float, y0: float, bearings: Singles, reach: Singles, window: Region) -> NDArray[np.int32]:
+def _passed(x0: float, y0: float, bearings: Singles, reach: Singles, window: Region) -> NDArray[np.intp]:
     """Which cells of the window the beams went through, in lengths of a cell; points each half cell, some twice."""
-    steps = np.arange(0.0, float(reach.max()), 0.5, dtype=np.float32)
-    x = np.multiply.outer(np.cos(bearings), steps)
-    y = np.multiply.outer(np.sin(bearings), steps)
+    counts = np.ceil(2 * reach).astype(np.intp)
+    ends = np.cumsum(counts)
+    along = np.arange(ends[-1], dtype=np.float32)
+    along -= np.repeat((ends - counts).astype(np.float32), counts)
+    along *= np.float32(0.5)
+    x, y = np.repeat(np.cos(bearings), counts), np.repeat(np.sin(bearings), counts)
+    x *= along
+    y *= along
+    return _cells(x, y, x0, y0, window)
+
+
+def _ends(x0: float, y0: float, bearings: Singles, reach: Singles, window: Region) -> NDArray[np.intp]:
+    return _cells(reach * np.cos(bearings), reach * np.sin(bearings), x0, y0, window)
+
+
+def _cells(x: Singles, y: Singles, x0: float, y0: float, window: Region) -> NDArray[np.intp]:
+    """Indices of the cells (x0 + x, y0 + y) of the window, which the sums lie in; changes x and y."""
     x += np.float32(x0)
     y += np.float32(y0)
-    cells = y.astype(np.int32)
-    cells *= np.int32(window.columns)
-    cells += x.astype(np.int32)
-    return cells[steps < reach[:, None]]
-
-
-def _ends(x0: float, y0: float, bearings: Singles, reach: Singles, window: Region) -> NDArray[np.int32]:
-    x = (np.float32(x0) + reach * np.cos(bearings)).astype(np.int32)
-    y = (np.float32(y0) + reach * np.sin(bearings)).astype(np.int32)
-    cells: NDArray[np.int32] = y * np.int32(window.columns) + x
+    cells = y.astype(np.intp)
+    cells *= window.columns
+    cells += x.astype(np.intp)
     return cells
 
 

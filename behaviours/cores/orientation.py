@@ -30,7 +30,7 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class FollowSettings:
-    """stand_off [m], gain [rad/m] and steepest [rad] are printed; decay, of a scan, and `backwards` [rad] chosen here."""
+    """stand_off [m], gain [rad/m] and steepest [rad] are printed; decay, of a scan, and backwards [rad] chosen here."""
 
     stand_off: float = 1.5
     gain: float = math.pi / 8
@@ -41,7 +41,7 @@ class FollowSettings:
 
 @dataclass(frozen=True, slots=True)
 class Tracked:
-    """The wall that is followed: its orientation [rad] in the world, how far it is [m], and its line, if one is seen."""
+    """The wall that is followed: orientation [rad] in the world, distance [m], and its line, if one is seen."""
 
     orientation: float
     distance: float

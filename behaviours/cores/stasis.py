@@ -132,6 +132,17 @@ def _undo(made: Drive, s: EscapeSettings) -> Drive:
     return Drive(-made.speed / max(1.0, share), -made.turn_rate / max(1.0, share))
 
 
+def before(told: Drive, reach: float) -> Floats:
+    """Points (3, 2) [m, robot frame] of what holds a robot that is told to move, `reach` [m] from its middle.
+
+    On the side to which it was to move; none where it was only to turn.
+    """
+    if not told.speed:
+        return np.zeros((0, 2))
+    angles = np.array([-0.4, 0.0, 0.4]) + (0.0 if told.speed > 0 else math.pi)
+    return reach * np.column_stack([np.cos(angles), np.sin(angles)])
+
+
 # --- motion, judged by what is seen -------------------------------------------------------------------
 
 BINS = 120

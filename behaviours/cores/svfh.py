@@ -4,8 +4,10 @@ Takes: points round the robot, a wanted direction. Gives: a histogram of blocked
 speed and turn rate towards it. Leaves alone: where the points come from, and whether the hull is round.
 
 Source: Yamauchi 2005, "Autonomous urban reconnaissance using man-portable UGVs" and "Wayfarer". A reading at range r
-blocks all directions within k / r of its own: it is widened by a clearance of k metres. Direction i of n is centred on
-i * 360 / n degrees, so that straight ahead is the middle of one and left and right are mirror images.
+blocks all directions within k / r of its own: it is widened by a clearance of k metres. Direction i of n is a wedge of
+360 / n degrees, centred on i * 360 / n degrees, so that straight ahead is the middle of one and left and right are
+mirror images. A wedge is blocked where any part of it is: what is wanted may lie anywhere in it, and would otherwise
+lead nearer to a reading than the clearance.
 """
 
 from __future__ import annotations
@@ -54,8 +56,8 @@ def histogram(points: Floats, settings: SvfhSettings) -> Counts:
     away = np.hypot(x, y)
     near = (away <= settings.window) & (away > ROUNDING)
     away, bearing = away[near], np.arctan2(y[near], x[near])
-    half = np.minimum(settings.clearance / away, math.pi)
     width = math.tau / n
+    half = np.minimum(settings.clearance / away + width / 2, math.pi)
     first = np.ceil((bearing - half) / width - ROUNDING).astype(np.int64)
     last = np.minimum(np.floor((bearing + half) / width + ROUNDING).astype(np.int64), first + n - 1)
     steps = np.bincount(first + n, minlength=3 * n + 1) - np.bincount(last + n + 1, minlength=3 * n + 1)
@@ -66,7 +68,8 @@ def histogram(points: Floats, settings: SvfhSettings) -> Counts:
 def chosen_direction(open_: NDArray[np.bool_], wanted: float, left: bool) -> float | None:
     """The wanted direction [rad, robot frame] where it is open, else the middle of the nearest open one, or None.
 
-    open_: (n,). left: which of two equally near ones.
+    open_: (n,). left: which of two equally near ones; those that differ by no more than one direction are equally near,
+    or a robot before a wall would change its mind with every tick.
     """
     n = len(open_)
     width = math.tau / n
@@ -76,9 +79,10 @@ def chosen_direction(open_: NDArray[np.bool_], wanted: float, left: bool) -> flo
     if not free.size:
         return None
     off = np.remainder(free * width - wanted + math.pi, math.tau) - math.pi
-    aside = np.abs(off)
-    best = off[aside <= aside.min() + ROUNDING]
-    return wrap(wanted + float(best.max() if left else best.min()))
+    to_left, to_right = off[off > 0.0].min(initial=math.inf), -off[off < 0.0].max(initial=-math.inf)
+    tie = abs(to_left - to_right) <= width + ROUNDING
+    goes_left = left if tie else to_left < to_right
+    return wrap(wanted + float(to_left if goes_left else -to_right))
 
 
 def front_range(points: Floats, settings: SvfhSettings) -> float:

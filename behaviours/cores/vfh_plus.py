@@ -22,6 +22,7 @@ from behaviours.interface import Floats, wrap
 
 Flags = NDArray[np.bool_]
 ROUNDING = 1e-9
+OPEN, BLOCKED = b"\0", b"\1"
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,36 +71,43 @@ def hysteresis(total: Floats, before: Flags | None, settings: VfhPlusSettings) -
 
 
 def masked(blocked: Flags, points: Floats, heading: float, radius: float, clearance: float) -> Flags:
-    """Also blocked: what only a tighter turn than of this radius [m] would reach past the points."""
-    if radius <= ROUNDING or not len(points):
+    """Also blocked: what only a tighter turn than of this radius [m] would reach past the points.
+
+    Straight behind is reached by either side.
+    """
+    if radius <= ROUNDING:
         return blocked
     x, y = points[:, 0], points[:, 1]
+    near = np.flatnonzero((x > 0) & (x < radius + clearance))
+    x, y = x[near], y[near]
+    left = (y > 0) & (np.hypot(x, y - radius) < radius + clearance)
+    right = (y < 0) & (np.hypot(x, y + radius) < radius + clearance)
+    if not (left.any() or right.any()):
+        return blocked
     bearing = np.arctan2(y, x)
-    left = (y > 0) & (x > 0) & (np.hypot(x, y - radius) < radius + clearance)
-    right = (y < 0) & (x > 0) & (np.hypot(x, y + radius) < radius + clearance)
     most_left = float(bearing[left].min(initial=math.pi))
     most_right = float(bearing[right].max(initial=-math.pi))
     n = len(blocked)
     off = np.remainder(np.arange(n) * math.tau / n - heading + math.pi, math.tau) - math.pi
-    result: Flags = blocked | (off > most_left) | (off < most_right)
-    return result
+    behind = np.abs(off) > math.pi - ROUNDING
+    result: Flags = blocked | ((off > most_left) | (off < most_right)) & ~behind
+    return result | (behind & bool(left.any() and right.any()))
 
 
 def openings(blocked: Flags) -> list[tuple[int, int]]:
     """First and last direction of each run of open ones, counter-clockwise; last may be n and more."""
-    n = len(blocked)
-    if blocked.all():
+    n, flags = len(blocked), blocked.tobytes()
+    if OPEN not in flags:
         return []
-    if not blocked.any():
+    if BLOCKED not in flags:
         return [(0, n - 1)]
-    edges = np.diff(np.concatenate([blocked[-1:], blocked]).astype(np.int8))
-    starts, ends = np.nonzero(edges == -1)[0], np.nonzero(edges == 1)[0]
-    return [(int(start), _next(ends, int(start), n) - 1) for start in starts]
-
-
-def _next(ends: NDArray[np.intp], start: int, n: int) -> int:
-    later = ends[ends > start]
-    return int(later[0]) if later.size else int(ends[0]) + n
+    starts = [0] if flags[0] == 0 and flags[-1] == 1 else []
+    at = flags.find(BLOCKED + OPEN)
+    while at >= 0:
+        starts.append(at + 1)
+        at = flags.find(BLOCKED + OPEN, at + 1)
+    twice = flags + flags
+    return [(start, twice.index(BLOCKED, start) - 1) for start in starts]
 
 
 def candidates(blocked: Flags, target: float, settings: VfhPlusSettings) -> list[float]:

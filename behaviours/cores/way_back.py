@@ -47,6 +47,11 @@ class WayBack:
         """It is on its way back."""
         return self._left > 0.0
 
+    @property
+    def is_known(self) -> bool:
+        """There is a way back."""
+        return len(self._way) > 1
+
     def rest(self) -> None:
         """The robot was not to move: standing still means nothing."""
         self._lately.clear()

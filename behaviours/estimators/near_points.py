@@ -12,20 +12,21 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from behaviours.cores.geometry import moved
 from behaviours.estimators.localisation import Localisation
-from behaviours.estimators.surroundings import Surroundings, moved
+from behaviours.estimators.surroundings import Surroundings
 from behaviours.interface import Channels, Floats, Pose, Reading, Report, Scan
 
 MAP = Pose(0.0, 0.0, 0.0)
-REACH, KEPT, CELL = 1.5, 20.0, 0.04  # [m] from the robot, [s], [m]: of two points nearer one is kept
+KEPT, CELL = 30.0, 0.04  # [s], [m]: of two points nearer than this one is kept
 WHOLE_TURN = math.radians(350.0)
 
 
 class NearPoints:
-    """points: (n, 2) [m] robot frame; sees_all: the sensors look to every side."""
+    """reach [m]: how near. points: (n, 2) [m] robot frame; sees_all: the sensors look to every side."""
 
-    def __init__(self, around: Surroundings, place: Localisation) -> None:
-        self._around, self._place = around, place
+    def __init__(self, around: Surroundings, place: Localisation, reach: float = 1.5) -> None:
+        self._around, self._place, self._reach = around, place, reach
         self._kept: Floats = np.zeros((0, 3))
         self.points: Floats = np.zeros((0, 2))
         self.sees_all = True
@@ -39,7 +40,7 @@ class NearPoints:
         pose = self._place.pose
         hidden = moved(self._kept[:, :2], MAP, pose)
         if self._around.fresh:
-            stays = ~_in_view(hidden, scan) & (np.hypot(hidden[:, 0], hidden[:, 1]) < REACH)
+            stays = ~_in_view(hidden, scan) & (np.hypot(hidden[:, 0], hidden[:, 1]) < self._reach)
             stays &= reading.stamp - self._kept[:, 2] < KEPT
             self._remember(np.concatenate([self._kept[stays], self._seen_near(pose, reading.stamp)]))
             hidden = hidden[stays]
@@ -49,7 +50,7 @@ class NearPoints:
 
     def _seen_near(self, pose: Pose, stamp: float) -> Floats:
         seen = self._around.points
-        near = moved(seen[np.hypot(seen[:, 0], seen[:, 1]) < REACH], pose, MAP)
+        near = moved(seen[np.hypot(seen[:, 0], seen[:, 1]) < self._reach], pose, MAP)
         return np.column_stack([near, np.full(len(near), stamp)])
 
     def _remember(self, points: Floats) -> None:

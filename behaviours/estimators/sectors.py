@@ -11,12 +11,10 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from behaviours.cores.steering import KEEP_OFF
 from behaviours.cores.svfh import SvfhSettings, histogram
 from behaviours.estimators.surroundings import Surroundings
 from behaviours.interface import Channels, Floats, Reading, Report
-
-KEEP_OFF = "keep-off-recent-path"
-"""The channel that says whether the recent path counts as an obstacle."""
 
 
 class Sectors:

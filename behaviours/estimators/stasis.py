@@ -1,7 +1,8 @@
 """Whether the robot is stuck: it is told to move, and does not.
 
 Takes: every reading; last tick's commands from the channels; for `modern` where the robot believes to be and what it
-sees. Gives: the level, and the motions of an escape. Leaves alone: driving.
+sees. Gives: the level, and the motions of an escape; to the recent path, for `modern`, where it was held. Leaves alone:
+driving.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from behaviours.cores.geometry import moved
 from behaviours.cores.stasis import (
     STILL,
     Cycle,
@@ -21,12 +23,14 @@ from behaviours.cores.stasis import (
     LevelSettings,
     Patience,
     PatienceSettings,
+    before,
     draw,
     profile,
     stood_still,
 )
 from behaviours.estimators.localisation import Localisation
-from behaviours.estimators.surroundings import Surroundings, moved
+from behaviours.estimators.recent_path import RecentPath
+from behaviours.estimators.surroundings import Surroundings
 from behaviours.interface import Channels, Command, Drive, Floats, Odometry, Pose, Reading, Report
 
 SCANS = 3
@@ -35,7 +39,8 @@ SCANS = 3
 
 @dataclass(frozen=True, slots=True)
 class StasisSettings:
-    """seed: of chance; slipping [m]: see `stood_still`; lifting [s]: see `_is_being_lifted`.
+    """seed: of chance; slipping [m]: see `stood_still`; lifting [s]: see `_is_being_lifted`;
+    reach [m]: of what holds the robot, from its middle.
 
     modern: the way in is driven backwards first, motion is judged by scans, cycles and vain escapes are noticed.
     """
@@ -47,17 +52,20 @@ class StasisSettings:
     modern: bool = False
     slipping: float = 0.05
     lifting: float = 3.0
+    reach: float = 0.45
     seed: int = 1
 
 
 class Stasis:
     """level: of stasis; patience: how often in vain. around: None where there is no lidar to judge motion by."""
 
-    def __init__(self, settings: StasisSettings, place: Localisation, around: Surroundings | None) -> None:
+    def __init__(
+        self, settings: StasisSettings, place: Localisation, around: Surroundings | None, path: RecentPath
+    ) -> None:
         self.settings = settings
         self.level = Level(settings.level)
         self.patience = Patience(settings.patience)
-        self._place, self._around = place, around
+        self._place, self._around, self._path = place, around, path
         self._cycle = Cycle(settings.cycle)
         self._free = FreePath(length=20)
         self._chance = np.random.default_rng(settings.seed)
@@ -90,8 +98,10 @@ class Stasis:
         if self.settings.modern:
             self._watch_for_cycles(reading.stamp)
         begun = self.patience.take(self.level.stuck, self._place.pose)
-        if self.settings.modern and begun and self.patience.episodes > 1:
+        if self.settings.modern and begun:
             self.level.fill()
+            if self.level.told_to_move(told) and not moves:
+                self._path.held_by(before(told, self.settings.reach))
 
     def way_back(self) -> tuple[Drive, ...]:
         """Motions, one a tick, that undo the last free ones; none but at the first try at a place, with `modern`."""
@@ -125,11 +135,11 @@ class Stasis:
             return
         points, pose = self._around.points, self._place.odometry
         self._scans = [*self._scans[-SCANS:], (points, pose)]
-        before, then = self._scans[0]
+        seen, then = self._scans[0]
         if len(self._scans) <= SCANS:
             return
-        expected = moved(before, then, pose)
-        self._slips = stood_still(profile(before), profile(expected), profile(points), self.settings.slipping)
+        expected = moved(seen, then, pose)
+        self._slips = stood_still(profile(seen), profile(expected), profile(points), self.settings.slipping)
 
 
 def commanded(channels: Channels) -> Drive:

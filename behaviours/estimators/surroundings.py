@@ -12,8 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from behaviours.cores.geometry import moved
 from behaviours.estimators.localisation import Localisation
-from behaviours.interface import Channels, Floats, Pose, Ranges, Reading, Report, Scan
+from behaviours.interface import Channels, Floats, Ranges, Reading, Report, Scan
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,15 +66,3 @@ def echo_points(ring: Ranges) -> Floats:
     heard = np.isfinite(ring.ranges) & (ring.ranges < ring.max_range)
     reach, bearing = ring.ranges[heard] + ring.mount_radius, ring.bearings[heard]
     return np.column_stack([reach * np.cos(bearing), reach * np.sin(bearing)])
-
-
-def moved(points: Floats, before: Pose, after: Pose) -> Floats:
-    """Points in the robot frame of `before`, in that of `after`; both poses in one frame."""
-    if before == after:
-        return points
-    turn = after.theta - before.theta
-    c, s = math.cos(before.theta), math.sin(before.theta)
-    dx, dy = after.x - before.x, after.y - before.y
-    x, y = points[:, 0] - (c * dx + s * dy), points[:, 1] - (c * dy - s * dx)
-    c, s = math.cos(turn), math.sin(turn)
-    return np.column_stack([c * x + s * y, c * y - s * x])

@@ -3,8 +3,8 @@
 Takes: the points round the robot and where it believes to be. Gives: the wanted heading in the map frame, the wall, and
 whether the robot has come round to where it began. Leaves alone: obstacles beside the wall, and driving.
 
-The whole of it follows a wall to the left. To follow one to the right it looks at the world in a mirror, so that the two
-sides cannot differ.
+The whole of it follows a wall to the left. To follow one to the right it looks at the world in a mirror, so that the
+two sides cannot differ.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from behaviours.cores.contour import ContourSettings, anchored, rolled, snapped
-from behaviours.cores.geometry import distance
+from behaviours.cores.geometry import distance, moved
 from behaviours.cores.hough import HoughSettings, Line, lines
 from behaviours.cores.orientation import FollowSettings, no_votes, tallied, tracked, wanted_heading
 from behaviours.estimators.localisation import Localisation
-from behaviours.estimators.surroundings import Surroundings, moved
+from behaviours.estimators.surroundings import Surroundings
 from behaviours.interface import Channels, Floats, Pose, Reading, Report, Vec2, wrap
 
 SHOWN_BAND = 0.15
@@ -29,8 +29,8 @@ SHOWN_BAND = 0.15
 
 @dataclass(frozen=True, slots=True)
 class RoundSettings:
-    """The robot has come round when it is back within `round_within` [m] of where it began, heading much as it did then,
-    after `round_after` [m] and having been twice as far away."""
+    """The robot has come round when it is back within `round_within` [m] of where it began, heading much as it did
+    then, after `round_after` [m] and having been twice as far away."""
 
     round_within: float = 3.0
     round_after: float = 20.0
@@ -71,7 +71,7 @@ class Walls:
             self._wanted = wrap(self._mirror * wanted)
 
     def _look(self, here: Pose) -> float | None:
-        """Take a scan, all of it seen so that the wall lies to the left; the wanted heading [rad] if there is a wall."""
+        """Take a scan, seen so that the wall lies to the left; gives the wanted heading [rad] if there is a wall."""
         follow, points = self.settings.follow, self._around.points * (1.0, self._mirror)
         found = lines(points, self.settings.hough)
         self._tally = tallied(self._tally, found, here.theta, follow)
@@ -121,7 +121,11 @@ class _Contour:
     def look(self, points: Floats, found: tuple[Line, ...], first: Line | None, here: Pose) -> Line | None:
         """Take a scan. The contour begins at the line `first`; gives the line on which it is, if it is on one."""
         self._points, self._from = snapped(points, found, self._settings.snap), here
-        contact = None if self._contact is None else anchored(self._points, to_robot(self._contact, here), self._settings.leap)
+        contact = (
+            None
+            if self._contact is None
+            else anchored(self._points, to_robot(self._contact, here), self._settings.leap)
+        )
         if contact is None and first is not None:
             contact = nearest_on(first, self._points)
         self._contact = None if contact is None else to_map(contact, here)

@@ -72,4 +72,5 @@ LIBRARY = Library(
     ),
     (_PRESET, _COMPASS, *_MODEL),
     _build,
+    works_unasked=True,
 )

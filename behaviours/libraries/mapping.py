@@ -14,6 +14,16 @@ from behaviours.estimators.mapper import Mapper, MapperSettings
 from behaviours.interface import Library, Offer, Parameter, Values, View, Workshop
 from behaviours.libraries.sharing import localisation
 
+SPARE = 2.0
+"""Cells before the end of a beam that `modern` leaves as they are."""
+
+_PRESET = Parameter(
+    "preset",
+    "symbol",
+    "",
+    "paper",
+    "`paper`; or `modern`: beams that graze a wall do not wipe it out.",
+)
 _BY = Parameter(
     "by", "symbol", "", "hybrid", "Scans lie where `hybrid` localisation says, or `odometry` alone (paper: both)."
 )
@@ -42,6 +52,8 @@ def _settings(values: Values) -> MapperSettings:
     positive("every", settings.every)
     if not grid.cell <= settings.region <= 2000 * grid.cell:
         raise ValueError("region must be from 1 to 2000 cells")
+    modern = chosen(_PRESET, values, "paper", "modern") == "modern"
+    grid = replace(grid, spare=SPARE if modern else 0.0)
     return replace(settings, by_odometry=chosen(_BY, values, "hybrid", "odometry") == "odometry", grid=grid)
 
 
@@ -78,6 +90,7 @@ LIBRARY = Library(
         number("the-mapped-area", "", "In square metres: the cells of which scans have told."),
         number("the-map-rate", "", "In bytes a second: what the map has cost to send so far, compressed."),
     ),
-    (_BY, *_SENDING, *_GRID),
+    (_PRESET, _BY, *_SENDING, *_GRID),
     _build,
+    works_unasked=True,
 )

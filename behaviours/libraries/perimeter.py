@@ -16,7 +16,11 @@ from behaviours.interface import Function, Library, Offer, Parameter, Values, Vi
 from behaviours.libraries.sharing import localisation, surroundings
 
 _PRESET = Parameter(
-    "preset", "symbol", "", "paper", "`paper`: along the strongest line; `modern`: a disc rolls along what stands there."
+    "preset",
+    "symbol",
+    "",
+    "paper",
+    "`paper`: along the strongest line; `modern`: a disc rolls along what stands there.",
 )
 _SIDE = Parameter("side", "symbol", "", "left", "The wall is kept to the `left` or to the `right`.")
 _FOLLOW = parameters(
@@ -37,7 +41,6 @@ _CONTOUR = parameters(
     ContourSettings(),
     ("look_ahead", "m", "With `modern`: the disc is swept so far; with the stand-off, the window of `svfh`."),
     ("regain", "", "With `modern`: how steeply a metre off the stand-off is corrected, rad/m (chosen here)."),
-    ("foresight", "m", "With `modern`: the tangent is that of a place so far ahead (chosen here)."),
     ("snap", "m", "With `modern`: points so near to a line lie on it (chosen here)."),
     ("leap", "m", "With `modern`: the place of contact moves by no more from scan to scan (chosen here)."),
 )

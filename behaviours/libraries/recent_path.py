@@ -19,8 +19,12 @@ _TRACE = parameters(
     ("ignored", "m", "Points nearer to the robot are not given (chosen here)."),
     ("here", "m", "A point so near is where the robot is (chosen here)."),
     ("spacing", "m", "With `:preset modern` one point in this distance, whatever the time (chosen here)."),
+    ("progress", "m", "`modern`: a robot that stays within this radius makes no progress (chosen here)."),
+    ("patience", "s", "`modern`: without progress for so long it is in a dead end, to be closed (chosen here)."),
 )
-_PRESET = Parameter("preset", "symbol", "", "paper", "`paper`: forgets by time; `modern`: by distance.")
+_PRESET = Parameter(
+    "preset", "symbol", "", "paper", "`paper`: forgets by time; `modern`: by distance, and remembers dead ends."
+)
 
 
 def recent_path(workshop: Workshop, settings: TraceSettings | None = None) -> RecentPath:
@@ -49,4 +53,5 @@ LIBRARY = Library(
     (boolean("we-were-here-lately", "The robot is where it was before, and was elsewhere in between."),),
     (_PRESET, *_TRACE),
     _build,
+    works_unasked=True,
 )

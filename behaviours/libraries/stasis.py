@@ -11,6 +11,7 @@ from behaviours.cores.stasis import CycleSettings, EscapeSettings, LevelSettings
 from behaviours.declaring import boolean, chosen, command, number, parameters, settings_of
 from behaviours.estimators.stasis import Stasis, StasisSettings
 from behaviours.interface import Library, Offer, Parameter, Values, Workshop
+from behaviours.libraries.recent_path import recent_path
 from behaviours.libraries.sharing import localisation, surroundings
 
 _LEVEL = parameters(
@@ -48,8 +49,10 @@ _RELEASE = Parameter(
 _SLIPPING = Parameter(
     "slipping", "number", "m", 0.05, "So much better a scan must fit standing than moving; `modern` alone."
 )
-_LIFTING = parameters(
-    StasisSettings(), ("lifting", "s", "For so long after flippers are sent out being held is no stasis (chosen here).")
+_MORE = parameters(
+    StasisSettings(),
+    ("lifting", "s", "For so long after flippers are sent out being held is no stasis (chosen here)."),
+    ("reach", "m", "What held the robot is remembered so far from its middle; `modern` alone (chosen here)."),
 )
 _SEED = Parameter("seed", "number", "", 1.0, "Of the random motions.")
 _PRESET = Parameter(
@@ -69,7 +72,8 @@ def _settings(values: Values, modern: bool) -> StasisSettings:
         settings_of(PatienceSettings(), _PATIENCE, values),
         modern,
         settings_of(StasisSettings(), (_SLIPPING,), values).slipping,
-        settings_of(StasisSettings(), _LIFTING, values).lifting,
+        settings_of(StasisSettings(), _MORE, values).lifting,
+        settings_of(StasisSettings(), _MORE, values).reach,
         settings_of(StasisSettings(), (_SEED,), values).seed,
     )
 
@@ -78,8 +82,8 @@ def _build(values: Values, workshop: Workshop) -> Offer:
     modern = chosen(_PRESET, values, "paper", "modern") == "modern"
     looks = chosen(_RANGES, values, "lidar", "sonar") == "lidar" and modern
     settings, place = _settings(values, modern), localisation(workshop)
-    around = surroundings(workshop) if looks else None
-    stasis = workshop.share(Stasis, lambda: Stasis(settings, place, around))
+    around, path = surroundings(workshop) if looks else None, recent_path(workshop)
+    stasis = workshop.share(Stasis, lambda: Stasis(settings, place, around, path))
     escape = Escape(stasis.way_back, stasis.draw, settings.escape.each, lambda: stasis.needs_operator)
     return Offer(
         percepts={
@@ -100,6 +104,6 @@ LIBRARY = Library(
         boolean("an-operator-is-needed", "Escapes at one place have been in vain too often (`modern`)."),
         command("escape-from-stasis", "Random motions, and with `modern` the way in backwards first.", "drive"),
     ),
-    (_PRESET, _RANGES, *_LEVEL, _RELEASE, *_ESCAPE, *_PATIENCE, *_CYCLE, _SLIPPING, *_LIFTING, _SEED),
+    (_PRESET, _RANGES, *_LEVEL, _RELEASE, *_ESCAPE, *_PATIENCE, *_CYCLE, _SLIPPING, *_MORE, _SEED),
     _build,
 )

@@ -10,21 +10,25 @@ import math
 from dataclasses import dataclass, replace
 from functools import partial
 
-from behaviours.competences.steer_by_vfh_plus import SteerByVfhPlus, SteerSettings
+from behaviours.competences.steer_by_vfh_plus import CARROT, SteerByVfhPlus, SteerSettings
 from behaviours.competences.steer_clear import SteerClear
 from behaviours.cores.hull_paths import Hull, Motors
+from behaviours.cores.look_ahead import LookAheadSettings
 from behaviours.cores.pilot import PilotSettings
+from behaviours.cores.steering import KEEP_OFF
 from behaviours.cores.svfh import SvfhSettings
 from behaviours.cores.vfh_plus import VfhPlusSettings, is_blocked
 from behaviours.cores.way_back import WayBackSettings
 from behaviours.declaring import boolean, chosen, command, number, parameters, positive, settings_of
 from behaviours.estimators.goal_heading import GoalHeading
 from behaviours.estimators.near_points import NearPoints
-from behaviours.estimators.sectors import KEEP_OFF, Sectors
+from behaviours.estimators.sectors import Sectors
 from behaviours.interface import Function, Library, Offer, Parameter, Pose, Values, Workshop
 from behaviours.libraries.recent_path import recent_path
 from behaviours.libraries.sharing import localisation, surroundings
 
+NEAR = 1.5
+"""[m]: so far it is remembered what stands where the lidar does not look now."""
 STEER = "steer-clear-of-obstacles"
 _SVFH = parameters(
     SvfhSettings(),
@@ -76,8 +80,8 @@ _PILOT = parameters(
 )
 _MOTORS = parameters(
     Motors(),
-    ("acceleration", "m/s^2", "With `modern`: how fast the robot brakes."),
-    ("turn_acceleration", "rad/s^2", "With `modern`: how fast it changes its turn rate."),
+    ("acceleration", "", "With `modern`: how fast the robot brakes, m/s^2."),
+    ("turn_acceleration", "", "With `modern`: how fast it changes its turn rate, rad/s^2."),
     ("hold", "s", "With `modern`: so long a command may last until the next one has its effect (chosen here)."),
 )
 _WAY_BACK = parameters(
@@ -88,6 +92,7 @@ _WAY_BACK = parameters(
 )
 _PRESET = Parameter("preset", "symbol", "", "paper", "`paper` or `modern`.")
 _RANGES = Parameter("ranges", "symbol", "", "lidar", "From a `lidar`, or from `sonar` rings.")
+_LOOK_AHEAD = Parameter("look-ahead", "number", "m", 0.0, "With `modern`: a way is looked for as far as this; 0: not.")
 _WHEN_BLOCKED = Parameter("when-blocked", "symbol", "", "left", "Where to turn: `left` or `right`.")
 _GOAL = (
     Parameter("goal-x", "number", "m", 0.0, "Of `(the-place-to-go)`, in the odometry frame: ahead of the start."),
@@ -107,6 +112,8 @@ def svfh_settings(values: Values) -> SvfhSettings:
     settings = settings_of(SvfhSettings(), _SVFH, values)
     if not 8 <= settings.directions <= 3600:
         raise ValueError("directions must be from 8 to 3600")
+    for name, value in (("window", settings.window), ("clearance", settings.clearance)):
+        positive(name, value)
     if settings.slow_range <= settings.stop_range:
         raise ValueError("slow-range must be more than stop-range")
     return settings
@@ -131,7 +138,13 @@ def _modern(values: Values, settings: SvfhSettings, left: bool) -> SteerSettings
         hull=outline,
         motors=motors,
     )
-    return SteerSettings(choice, pilot, settings_of(WayBackSettings(), _WAY_BACK, values), left)
+    far = float(values.get("look-ahead", _LOOK_AHEAD.default))
+    if not 0.0 <= far <= 10.0:
+        raise ValueError(f"look-ahead must be from 0 to 10 m, not {far}")
+    ahead = LookAheadSettings(half=far, keep=outline.half_width + pilot.margin) if far else None
+    if ahead is not None:
+        choice = replace(choice, window=min(choice.window, 2 * CARROT))
+    return SteerSettings(choice, pilot, settings_of(WayBackSettings(), _WAY_BACK, values), left, ahead)
 
 
 def _build(values: Values, workshop: Workshop) -> Offer:
@@ -146,7 +159,9 @@ def _build(values: Values, workshop: Workshop) -> Offer:
     steer: SteerClear | SteerByVfhPlus
     if modern:
         plus = _modern(values, settings, left)
-        near = workshop.share(NearPoints, lambda: NearPoints(around, place))
+        near = workshop.share(
+            NearPoints, lambda: NearPoints(around, place, max(NEAR, plus.ahead.half if plus.ahead else 0.0))
+        )
         steer = SteerByVfhPlus(plus, near, place, lambda: around.known, lambda: path.points)
         blocked = partial(_is_blocked, near, plus)
     else:
@@ -179,6 +194,6 @@ LIBRARY = Library(
             reads=("heading", KEEP_OFF),
         ),
     ),
-    (_PRESET, _RANGES, _WHEN_BLOCKED, *_SVFH, *_PLUS, *_HULL, *_PILOT, *_MOTORS, *_WAY_BACK, *_GOAL),
+    (_PRESET, _RANGES, _WHEN_BLOCKED, _LOOK_AHEAD, *_SVFH, *_PLUS, *_HULL, *_PILOT, *_MOTORS, *_WAY_BACK, *_GOAL),
     _build,
 )

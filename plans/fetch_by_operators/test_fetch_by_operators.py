@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
 import pytest
 
 from rplan.apps.simulation import Run, load_world, simulate
+from rplan.apps.testing import PlanUnderTest
 from rplan.apps.wiring import compile_file
 from rplan.driver import Compiled
 
@@ -16,13 +18,13 @@ LOT = HERE.parent / "find_and_fetch" / "parking_lot.yaml"
 
 
 @cache
-def plan() -> Compiled:
+def compiled() -> Compiled:
     return compile_file(HERE / "fetch_by_operators.rplan")
 
 
 @cache
 def run() -> Run:
-    return simulate(plan(), load_world(LOT), 0)
+    return simulate(compiled(), load_world(LOT), 0)
 
 
 @pytest.mark.rule("L20")
@@ -46,5 +48,9 @@ def test_the_object_is_fetched() -> None:
     assert verdict.driven_into == 0
 
 
+def test_the_golden_ticks_stand(plan: Callable[[str], PlanUnderTest]) -> None:
+    plan("fetch_by_operators.rplan").golden("fetch_by_operators.ticks")
+
+
 def test_nothing_is_wrong_with_the_plan() -> None:
-    assert plan().diagnostics == ()
+    assert compiled().diagnostics == ()

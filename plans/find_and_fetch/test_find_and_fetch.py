@@ -2,60 +2,39 @@
 
 from __future__ import annotations
 
-import json
-import os
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
 import pytest
 
 from rplan.apps.simulation import Run, load_world, simulate
-from rplan.apps.wiring import compile_file, decider
+from rplan.apps.testing import PlanUnderTest
+from rplan.apps.wiring import compile_file
 from rplan.driver import Compiled
-from rplan.runtime.trace import Trace
 
 HERE = Path(__file__).parent
-GOLDEN = HERE / "find_and_fetch.ticks"
+Opened = Callable[[str], PlanUnderTest]
 RUNAWAY, NAVIGATE = "(move-away-from-danger)", "(move-according-to-NaT-plan)"
 
 
 @cache
-def plan() -> Compiled:
+def compiled() -> Compiled:
     return compile_file(HERE / "find_and_fetch.rplan")
 
 
 @cache
 def run(seed: int) -> Run:
-    return simulate(plan(), load_world(HERE / "parking_lot.yaml"), seed)
+    return simulate(compiled(), load_world(HERE / "parking_lot.yaml"), seed)
 
 
-def decided(lines: list[str]) -> list[str]:
-    """What the plan decides in each situation of the golden file, one line for each of its pairs."""
-    decide, trace = decider(plan()), Trace(plan().ways)
-    every = [term.name for term in plan().goals.percepts()]
-    out = []
-    for number, line in enumerate(lines):
-        true = json.loads(line)
-        assert set(true) <= set(every), line
-        decision = decide.tick({f"({name})": name in true for name in every})
-        out.append(trace.line(number, decision))
-    return out
-
-
-def test_the_golden_ticks_stand() -> None:
-    """Pairs of lines: the percepts that are true, and what the plan decides (RPLAN_BLESS=1 rewrites them)."""
-    lines = GOLDEN.read_text(encoding="utf-8").splitlines()
-    situations = [line for line in lines if line.startswith("[")]
-    now = decided(situations)
-    if os.environ.get("RPLAN_BLESS"):
-        pairs = [text for pair in zip(situations, now, strict=True) for text in pair]
-        GOLDEN.write_text("\n".join(pairs) + "\n", encoding="utf-8")
-    kept = GOLDEN.read_text(encoding="utf-8").splitlines()
-    assert [line for line in kept if not line.startswith("[")] == now
+def test_the_golden_ticks_stand(plan: Opened) -> None:
+    """`pytest --rplan --rplan-bless plans/find_and_fetch/find_and_fetch.ticks` writes them anew."""
+    plan("find_and_fetch.rplan").golden("find_and_fetch.ticks")
 
 
 def test_the_plan_has_nothing_to_complain_of() -> None:
-    assert plan().diagnostics == ()
+    assert compiled().diagnostics == ()
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2])

@@ -1,4 +1,4 @@
-"""The patrol in the yard: round after round, and never with an empty battery."""
+"""The patrol, tick by tick and in the yard: round after round, and never with an empty battery."""
 
 from __future__ import annotations
 
@@ -27,6 +27,10 @@ class Levels:
         assert battery is not None
         self.levels.append(battery.level)
         self.charging += battery.charging
+
+
+def test_the_golden_ticks_stand(plan):
+    plan("patrol.rplan").golden("patrol.ticks")
 
 
 @pytest.mark.parametrize("seed", [0, 1])

@@ -3,12 +3,14 @@
 Takes: a recording and a time, or a plan with percepts and a trace. Gives: `Moment`: the compiled plan, the atoms and
 registers of the tick, and what each output was before. Leaves alone: the answer; see commands/why.py and why_not.py.
 
-The plan of a recording is compiled again from the text that stands in its header, with the texts that it includes.
+The plan of a recording is compiled again from the text that stands in its header, with the texts that it includes. Its
+ticks are looked at from the one that is asked about backwards, until each output is seen with another value.
 """
 
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -21,15 +23,17 @@ from rplan.apps.commands.tick import Keys
 from rplan.apps.files import InputError, plan_file, unreadable
 from rplan.apps.wiring import compile_source, decider
 from rplan.driver import Compiled
+from rplan.goals.condition import Comparison, Percept, percept_terms
 from rplan.lang.diagnostic import PlanError
 from rplan.lang.include import OpenFile
 from rplan.lang.source import Source, Span
-from rplan.lang.units import BadNumberError, read_number
-from rplan.runtime.encode import PerceptError, PerceptValue
+from rplan.lang.units import BadNumberError, canonical_number, read_number
+from rplan.runtime.encode import PerceptError, PerceptValue, wrong_number
 from rplan.runtime.tick import Decider, Decision
-from rplan.runtime.trace import texts
-from rplan.ways.situations import nothing
-from sim.recording import MAGIC, RecordingError, read
+from rplan.runtime.trace import numbers, outputs_and_sent, texts
+from rplan.ways.situations import atom_value, nothing
+from sim.chunks import MAGIC
+from sim.recording import RecordingError, latest, read
 
 LATE = 1e-6
 """Times nearer than this [s] are one."""
@@ -47,9 +51,11 @@ class Since:
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """One tick. time: of the tick [s]; percepts: their values, None where only the atoms are known.
+    """One tick. time: of the tick [s]; percepts: their values, None where only the atoms are known (in recordings of
+    earlier days).
 
-    sent: output -> what its channel was sent, after idle and held values; since: output -> since when.
+    sent: output -> what its channel was sent, after idle and held values; since: output -> since when. forced: the
+    percepts that someone who watched had set by hand.
     """
 
     compiled: Compiled
@@ -60,6 +66,27 @@ class Moment:
     sent: Mapping[str, str | None]
     since: Mapping[str, Since]
     percepts: Mapping[str, PerceptValue] | None = None
+    forced: Mapping[str, PerceptValue] = field(default_factory=dict)
+
+    def numbers(self, texts: Iterable[str]) -> dict[str, float]:
+        """The numbers that the comparisons in these conditions ask, by percept, where they are known."""
+        comparisons = [one for one in self.compiled.ways.atoms if isinstance(one, Comparison)]
+        asked = [one for text in texts for one in comparisons if one.text in text]
+        known = self.percepts or {}
+        return {t.text: float(known[t.text]) for one in asked for t in percept_terms(one) if t.text in known}
+
+    def readable(self) -> dict[str, str]:
+        """The numbers with their units, to three digits or as many as no comparison needs to come out otherwise."""
+        if self.percepts is None:
+            return {}
+        values = dict(self.percepts)
+        atoms = [*zip(self.compiled.ways.atoms, self.atoms, strict=False)]
+        for name in numbers(self.compiled.ways):
+            every = (values | {name: float(f"{values[name]:.{digits}g}")} for digits in range(3, 18))
+            values = next(one for one in every if all(atom_value(atom, one) == value for atom, value in atoms))
+        terms = {term.text: term for term in self.compiled.goals.percepts(driving=True)}
+        units = {name: "" if term.type is None else term.type.unit for name, term in terms.items()}
+        return {name: canonical_number(float(values[name]), units[name]) for name in numbers(self.compiled.ways)}
 
     def place(self, span: Span) -> str:
         """A place without the folder."""
@@ -127,32 +154,84 @@ class _Before:
 
 
 def _recorded(path: Path, at: float | None) -> Moment:
-    recording = read(path)
-    compiled = _compiled_again(path, recording.header.get("plan"))
-    before = _Before()
-    found: tuple[int, float, Mapping[str, object]] | None = None
-    last = 0.0
-    for number, time, plan in _ticks(recording.ticks):
-        last = time
-        if at is None or not time <= at + LATE:
-            continue
-        found = (number, time, plan)
-        before.add(number, time, _shown(plan))
-    if at is None:
-        raise InputError(f"say when: --at SECONDS ({path} lasts from 0 s to {last:g} s)")
-    if found is None or not at <= last + compiled.goals.period + LATE:
-        raise InputError(f"--at {at:g}: {path} lasts from 0 s to {last:g} s")
-    number, time, plan = found
-    atoms, registers = _bits(path, plan, compiled)
-    return Moment(compiled, number, time, atoms, registers, before.last, before.since)
+    compiled = _compiled_again(path, read(path).header.get("plan"))
+    ticks = _ticks_back(path, math.nan if at is None else at + LATE)
+    found, period = next(ticks, None), compiled.goals.period
+    if at is None or found is None or (at > found.time + period + LATE and at > _last(path) + period + LATE):
+        lasts = f"{path} lasts from 0 s to {_last(path):g} s"
+        raise InputError(f"say when: --at SECONDS ({lasts})" if at is None else f"--at {at:g}: {lasts}")
+    atoms, registers = _bits(path, found.plan, compiled)
+    percepts = _percepts(path, found.plan, compiled, atoms)
+    since, forced = _since(found, ticks), _forced(found.text, compiled)
+    return Moment(compiled, found.number, found.time, atoms, registers, found.shown, since, percepts, forced)
 
 
-def _ticks(ticks: Iterable[Mapping[str, object]]) -> Iterator[tuple[int, float, Mapping[str, object]]]:
-    """Number, time [s] and the plan's part of every tick in which the plan decided."""
-    for number, tick in enumerate(ticks):
-        time, plan = tick.get("t"), tick.get("plan")
-        if isinstance(time, int | float) and isinstance(plan, Mapping):
-            yield number, float(time), plan
+def _last(path: Path) -> float:
+    """When the plan decided last [s]."""
+    return next((one.time for one in _ticks_back(path, math.inf)), 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class _Recorded:
+    """A tick in which the plan decided, as its text; what it showed stands ready, the rest is decoded when asked."""
+
+    text: str
+    shown: Mapping[str, str | None]
+
+    @property
+    def number(self) -> int:
+        number = json.loads(self.text).get("tick")
+        return number if isinstance(number, int) else 0
+
+    @property
+    def time(self) -> float:
+        return float(json.loads(self.text)["t"])
+
+    @property
+    def plan(self) -> Mapping[str, object]:
+        plan: Mapping[str, object] = json.loads(self.text)["plan"]
+        return plan
+
+
+def _ticks_back(path: Path, until: float) -> Iterator[_Recorded]:
+    """The ticks up to a time [s] in which the plan decided, the latest first."""
+    known: str = ""
+    shown: Mapping[str, str | None] = {}
+    for text in latest(path, until):
+        part = outputs_and_sent(text)
+        if not part or part != known:
+            known, parts = _parts(text, part)
+            if parts is None:
+                continue
+            shown = _shown(parts)
+        yield _Recorded(text, shown)
+
+
+def _parts(text: str, part: str) -> tuple[str, Mapping[str, object] | None]:
+    """What has outputs and sent: the part of the text that has, or else the plan's part of the whole; None: no tick."""
+    try:
+        return part, json.loads(part)
+    except ValueError:
+        tick = json.loads(text)
+    plan = tick.get("plan")
+    return "", plan if isinstance(tick.get("t"), int | float) and isinstance(plan, Mapping) else None
+
+
+def _since(found: _Recorded, before: Iterator[_Recorded]) -> dict[str, Since]:
+    """Since when each output of a tick has its value."""
+    since: dict[str, Since] = {}
+    then = found
+    for tick in before:
+        if tick.shown is not then.shown:
+            for output in [name for name in found.shown if name not in since]:
+                if output not in tick.shown or tick.shown[output] != found.shown[output]:
+                    is_new = output not in tick.shown
+                    since[output] = Since(then.number, then.time, tick.shown.get(output), is_new)
+            if len(since) == len(found.shown):
+                break
+        then = tick
+    begin = {name: Since(then.number, then.time, None, True) for name in found.shown if name not in since}
+    return {name: (since | begin)[name] for name in found.shown}
 
 
 def _shown(plan: Mapping[str, object]) -> dict[str, str | None]:
@@ -174,6 +253,32 @@ def _bits(path: Path, plan: Mapping[str, object], compiled: Compiled) -> tuple[t
     if (len(found[0]), len(found[1])) != wanted:
         raise _read_otherwise(path)
     return found[0], found[1]
+
+
+def _forced(text: str, compiled: Compiled) -> dict[str, PerceptValue]:
+    by_hand = json.loads(text).get("by_hand")
+    forced = by_hand.get("forced") if isinstance(by_hand, Mapping) else None
+    known = forced if isinstance(forced, Mapping) else {}
+    read = [term.text for term in compiled.goals.percepts(driving=True)]
+    return {name: known[name] for name in read if isinstance(known.get(name), bool | int | float)}
+
+
+def _percepts(
+    path: Path, plan: Mapping[str, object], compiled: Compiled, atoms: tuple[bool, ...]
+) -> Mapping[str, PerceptValue] | None:
+    """The values of the percepts: truth values are atoms, numbers stand beside them; None where they do not."""
+    given, compared = plan.get("percepts"), numbers(compiled.ways)
+    known = given if isinstance(given, Mapping) else {}
+    if not all(name in known for name in compared):
+        return None
+    values: dict[str, PerceptValue] = {name: known[name] for name in compared}
+    if any(wrong_number(value) for value in values.values()):
+        raise _read_otherwise(path)
+    asked = compiled.ways.atoms[: compiled.ways.asking]
+    values |= {atom.text: value for atom, value in zip(asked, atoms, strict=True) if isinstance(atom, Percept)}
+    if any(atom_value(atom, values) != value for atom, value in zip(asked, atoms, strict=True)):
+        raise _read_otherwise(path)
+    return values
 
 
 def _read_otherwise(path: Path) -> InputError:

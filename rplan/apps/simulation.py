@@ -175,7 +175,7 @@ def simulate(
 
     Raises `PlanError` (unbound functions), `ScenarioError` (no layout for this seed), `OSError`.
     """
-    brain = PlanBrain(compiled, libraries)
+    brain = PlanBrain(compiled, libraries, looked_at=record is not None)
     episode = Episode(world.scenario, seed, compiled.goals.period)
     commands = tuple(o.name for o in compiled.goals.outputs if o.type is not None and o.type.name == "command")
     with _recorder(record, compiled, world, episode) as recorder:

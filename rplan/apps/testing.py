@@ -22,6 +22,9 @@ from rplan.apps.trying import (
     kind_of,
     named,
     percept_names,
+    read_golden,
+    shown,
+    try_golden,
     unexpected,
     unwatched,
 )
@@ -64,12 +67,19 @@ class Moment:
 
 
 class PlanUnderTest:
-    """A plan; each `given`, `episode` and `replayed` begins on one that has just been started."""
+    """A plan; each `given`, `golden`, `episode` and `replayed` begins on one that has just been started.
 
-    def __init__(self, compiled: Compiled, libraries: Catalogue | None = None, watch: Watch = unwatched) -> None:
+    ways: golden ticks are compared with the way taken too; where a slip was made in the plan on purpose they are not,
+    since its conditions read otherwise whether or not it does otherwise.
+    """
+
+    def __init__(
+        self, compiled: Compiled, libraries: Catalogue | None = None, watch: Watch = unwatched, *, ways: bool = True
+    ) -> None:
         self.compiled = compiled
         self.libraries = libraries
         self.watch = watch
+        self.ways = ways
 
     @classmethod
     def of(cls, path: Path | str, libraries: Catalogue | None = None, watch: Watch = unwatched) -> Self:
@@ -80,11 +90,23 @@ class PlanUnderTest:
         """The first tick. `name` is true, `not name` false, `name=0.3m` a number; others are false or 0."""
         return Run(self).then(*percepts)
 
+    def golden(self, ticks: Path | str) -> Self:
+        """Golden ticks stand. A file that is not found as it stands is one beside the plan; `TicksError`, OSError."""
+        golden = read_golden(self._beside(ticks), self.compiled)
+        trace = Trace(self.compiled.ways)
+        stood = try_golden(decider(self.compiled), trace, golden, self.watch, ways=self.ways)
+        if stood.differing:
+            raise AssertionError(shown(stood))
+        return self
+
     def episode(self, scenario: Path | str, seed: int = 0) -> EpisodeUnderTest:
         """An episode in a world, not yet run. A scenario that is not found as it stands is one beside the plan."""
-        path = Path(scenario)
+        return EpisodeUnderTest(self, self._beside(scenario), seed)
+
+    def _beside(self, given: Path | str) -> Path:
+        path = Path(given)
         beside = Path(self.compiled.source.name).parent / path
-        return EpisodeUnderTest(self, beside if not path.is_file() and beside.is_file() else path, seed)
+        return beside if not path.is_file() and beside.is_file() else path
 
     def replayed(self, recording: Path | str) -> tuple[Changed, ...]:
         """The ticks of a recorded run in which this plan would have decided otherwise, by what was sensed then.

@@ -28,6 +28,8 @@ from rplan.ways.situations import nothing, number_percepts
 
 SUFFIXES = (".ticks", ".ticks.jsonl")
 COMMENT = ";"
+MOST_TICKS = 3
+"""Golden ticks that differ are shown, so many."""
 Watch = Callable[[Decision], None]
 """Sees every tick that is tried."""
 Values = dict[str, PerceptValue]
@@ -218,18 +220,45 @@ def try_ticks(decide: Decider, golden: Golden, watch: Watch) -> Difference | Non
     return None
 
 
+@dataclass(frozen=True, slots=True)
+class Stood:
+    """Golden ticks after they were tried. now: what `rplan tick` prints, a line a tick; differing: a text a tick."""
+
+    now: tuple[str, ...]
+    differing: tuple[str, ...]
+
+
+def try_golden(decide: Decider, trace: Trace, golden: Golden, watch: Watch, *, ways: bool = True) -> Stood:
+    """Every golden tick with all that stands in it; ways: also how it came about, where that stands there."""
+    now, differing = [], []
+    for number, tick in enumerate(golden.ticks):
+        decision = decided(decide, golden, tick)
+        watch(decision)
+        now.append(trace.line(number, decision))
+        differs = ["+ nothing stands there yet"]
+        if tick.expected is not None:
+            expected = {key: value for key, value in tick.expected.items() if ways or key != "way"}
+            differs = compared(expected, json.loads(now[-1]))
+        if differs:
+            said = [f"{golden.path.name}:{tick.line}: tick {number}", *(f"    {line}" for line in differs)]
+            differing.append("\n".join(said))
+    return Stood(tuple(now), tuple(differing))
+
+
+def shown(stood: Stood) -> str:
+    """The first ticks that differ."""
+    every, ticks = stood.differing, len(stood.now)
+    more = [f"… and {len(every) - MOST_TICKS} more"] if len(every) > MOST_TICKS else []
+    says = f"{len(every)} of {ticks} ticks differ (- golden, + now; --rplan-bless writes them anew)"
+    return "\n".join([says, *every[:MOST_TICKS], *more])
+
+
 def decided(decide: Decider, golden: Golden, tick: GoldenTick) -> Decision:
     """One golden tick decided; `TicksError` where its percepts have no proper values."""
     try:
         return decide.tick(tick.values)
     except PerceptError as error:
         raise TicksError(f"{golden.path}:{tick.line}: {error}") from None
-
-
-def printed(trace: Trace, number: int, decision: Decision) -> Mapping[str, object]:
-    """What `rplan tick` prints, as values."""
-    line: Mapping[str, object] = json.loads(trace.line(number, decision))
-    return line
 
 
 def compared(expected: Mapping[str, object], got: Mapping[str, object]) -> list[str]:

@@ -34,7 +34,7 @@ def signature(library: Library) -> LibrarySignature:
         for f in library.functions
     )
     parameters = tuple(ParameterSignature(p.name, Type(p.type, p.unit), p.default, p.doc) for p in library.parameters)
-    return LibrarySignature(library.name, functions, parameters, library.doc)
+    return LibrarySignature(library.name, functions, parameters, library.doc, library.works_unasked)
 
 
 def signatures(libraries: Catalogue | None = None) -> Libraries:
@@ -123,20 +123,24 @@ def crew(compiled: Compiled, libraries: Catalogue | None = None) -> Crew[Command
 class PlanBrain:
     """A plan as the brain of an episode.
 
+    looked_at: somebody looks at its ticks; else they show nothing, and no note is made of them.
+
     `PlanError` if nothing brings a function of the plan to life, or if the world cannot tick as it does.
     """
 
-    def __init__(self, compiled: Compiled, libraries: Catalogue | None = None) -> None:
+    def __init__(self, compiled: Compiled, libraries: Catalogue | None = None, *, looked_at: bool = True) -> None:
         _check_tick(compiled)
         self.compiled = compiled
         self._libraries = libraries or catalogue()
+        self._looked_at = looked_at
         self.trace = Trace(compiled.ways, _show)
         self.tick: Tick[Command] | None = None
         self._controller = self._new()
 
     def _new(self) -> Controller[Command]:
         try:
-            return Controller(decider(self.compiled), crew(self.compiled, self._libraries))
+            crew_of_it = crew(self.compiled, self._libraries)
+            return Controller(decider(self.compiled), crew_of_it, looked_at=self._looked_at)
         except UnboundError as error:
             raise PlanError(
                 Diagnostic(
@@ -161,7 +165,7 @@ class PlanBrain:
 
     def note(self) -> str:
         """The last tick as JSON text."""
-        return "null" if self.tick is None else self.trace.note(self.tick)
+        return "null" if self.tick is None or not self._looked_at else self.trace.note(self.tick)
 
     def close(self) -> None:
         """Stop what runs."""

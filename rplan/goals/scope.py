@@ -186,5 +186,7 @@ def report_unused(plan: Plan, scope: Scope) -> None:
             )
     for use in plan.uses:
         library = scope.libraries.get(use.library)
-        if library is not None and not any(("function", f.name) in used for f in library.functions):
+        if library is None or library.works_unasked:
+            continue
+        if not any(("function", f.name) in used for f in library.functions):
             scope.findings.add("warning", "unused", f"nothing of the library `{use.library}` is used", use.span)

@@ -44,12 +44,13 @@ class ParameterSignature:
 
 @dataclass(frozen=True, slots=True)
 class LibrarySignature:
-    """What a library offers to plans."""
+    """What a library offers to plans; works_unasked: also where none of its functions is used."""
 
     name: str
     functions: tuple[FunctionSignature, ...]
     parameters: tuple[ParameterSignature, ...]
     doc: str = ""
+    works_unasked: bool = False
 
 
 Libraries = Mapping[str, LibrarySignature]

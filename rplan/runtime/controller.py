@@ -67,11 +67,17 @@ class UnboundError(Exception):
 
 
 class Controller(Generic[C]):
-    """A plan with its crew. `UnboundError` if the plan needs a function that the crew lacks."""
+    """A plan with its crew. `UnboundError` if the plan needs a function that the crew lacks.
 
-    def __init__(self, decider: Decider, crew: Crew[C], deadline: Deadline | None = None) -> None:
+    looked_at: somebody looks at what the crew shows; else its views are not asked.
+    """
+
+    def __init__(
+        self, decider: Decider, crew: Crew[C], deadline: Deadline | None = None, *, looked_at: bool = True
+    ) -> None:
         self.decider = decider
         self.crew = crew
+        self._views = crew.views if looked_at else {}
         self._deadline = deadline
         self._commands = [name for name in (o.name for o in decider.goals.outputs) if self._is_command(name)]
         self._idle = {output.name: output.idle for output in decider.goals.outputs}
@@ -137,7 +143,7 @@ class Controller(Generic[C]):
             tuple(self._faults),
             self._reports,
             command,
-            {name: seen for name, view in self.crew.views.items() if (seen := view()) is not None},
+            {name: seen for name, view in self._views.items() if (seen := view()) is not None},
         )
 
     def close(self) -> C:

@@ -1,7 +1,7 @@
 """A tick as JSON, for recordings and for `rplan tick`.
 
 Takes: decisions and ticks of a compiled plan. Gives: JSON text in the form of L22 (`way` names rules, branches and
-members given up). Leaves alone: where it is written.
+members given up), and from the text of a recorded tick what it set and sent. Leaves alone: where it is written.
 
 A way depends on inputs and registers alone, so it is put into words once for each pair of them.
 """
@@ -14,12 +14,16 @@ from dataclasses import asdict
 from typing import Any
 
 from rplan.circuit.evaluate import Bits
-from rplan.goals.condition import Term
+from rplan.goals.condition import Comparison, Term, percept_terms
 from rplan.lang.source import Span
 from rplan.runtime.controller import Tick
 from rplan.runtime.tick import Decision, Setting
 from rplan.ways.reduce import Ways
 from rplan.ways.way import TakenWay, taken_way
+
+NOTE = ',"plan":{"inputs":"'
+"""How the plan's part of a recorded tick begins."""
+SENT = '},"sent":{'
 
 Show = Callable[[object], object]
 """A value of the run-time world -> plain JSON value."""
@@ -32,6 +36,7 @@ class Trace:
         self._ways = ways
         self._file = ways.goals.top.span.file
         self._show = show
+        self._numbers = numbers(ways)
         self._known: dict[tuple[Bits, Bits], tuple[TakenWay, str]] = {}
 
     def way(self, decision: Decision) -> TakenWay:
@@ -73,6 +78,7 @@ class Trace:
             "hole": decision.hole,
             "outputs": texts(decision.outputs),
             "sent": sent,
+            "percepts": {text: tick.percepts[text] for text in self._numbers},
             "started": list(tick.started),
             "stopped": list(tick.stopped),
             "faults": [asdict(fault) for fault in tick.faults],
@@ -84,6 +90,26 @@ class Trace:
         if tick.shown:
             rest["shown"] = dict(tick.shown)
         return f'{_compact(rest)[:-1]},"way":{self._way(decision)[1]}}}'
+
+
+def numbers(ways: Ways) -> tuple[str, ...]:
+    """The percepts that a plan compares, by canonical text; all others are truth values, and inputs themselves."""
+    atoms = ways.atoms[: ways.asking]
+    compared = {term.text for atom in atoms if isinstance(atom, Comparison) for term in percept_terms(atom)}
+    return tuple(term.text for term in ways.goals.percepts(driving=True) if term.text in compared)
+
+
+def outputs_and_sent(text: str) -> str:
+    """The part of a recorded tick's text that has its outputs and what was sent; "" where it is not written like one.
+
+    Ticks with the same part set and sent the same, so that not every tick of a long run has to be decoded.
+    """
+    begin = text.find('"outputs":{', text.find(NOTE))
+    middle = text.find(SENT, begin)
+    end = text.find('},"', middle + len(SENT) - 1)  # neither outputs nor what is sent hold objects
+    if text.count(NOTE) != 1 or not 0 <= begin < middle < end:
+        return ""
+    return f"{{{text[begin : end + 1]}}}"
 
 
 def texts(setting: Setting) -> dict[str, str | None]:

@@ -33,6 +33,8 @@ from rplan.ways.situations import (
     registers_in,
 )
 
+EASY = 2
+"""Most questions are answered before this tick; only from it on is it asked whether there is an answer at all."""
 MOST_TICKS = 40
 """So far z3 unrolls before it turns to Spacer."""
 DEEPEST = 400
@@ -118,7 +120,7 @@ class Reach:
                 return answer
             if answer:
                 return tick
-            if limit == MOST_TICKS and self._never(question, registers, tick):
+            if tick >= EASY and limit == MOST_TICKS and self._never(question, registers, tick):
                 return None
             tick += 1
             if tick == MOST_TICKS and limit == MOST_TICKS:

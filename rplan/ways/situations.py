@@ -293,5 +293,7 @@ def cone(ways: Ways, guards: Iterable[int]) -> list[int]:
 
 def registers_in(ways: Ways, guards: Iterable[int]) -> tuple[int, ...]:
     """The registers that the guards depend on in any tick."""
+    if not ways.registers:
+        return ()
     nodes = (ways.guards.nodes[guard] for guard in cone(ways, guards))
     return tuple(sorted(a for kind, a, _ in nodes if kind == "register"))

@@ -17,7 +17,7 @@ from rplan.apps.cli import cli
 from rplan.apps.drawing.inspect import Table, inspect
 from rplan.apps.drawing.inspect_page import page
 from rplan.apps.drawing.inspect_svg import draw
-from rplan.apps.drawing.inspect_text import text
+from rplan.apps.drawing.inspect_text import WIDTH, text
 from rplan.circuit.evaluate import evaluate
 from rplan.driver import Compiled, compile_plan
 from rplan.lang.source import Source
@@ -239,3 +239,32 @@ def test_what_cannot_be_written_or_drawn_is_said(tmp_path: Path) -> None:
     large.write_text(many(800), encoding="utf-8")
     drawn = rplan_inspect(str(large), "--circuit", "--svg", str(tmp_path / "a.svg"))
     assert drawn.exit_code == 2 and "too large to be drawn" in drawn.stderr
+
+
+# --- what is large ---------------------------------------------------------------------------------
+
+
+def loud(outputs: int) -> str:
+    """A plan that sets so many outputs at once."""
+    names = [f"light-{k}" for k in range(outputs)]
+    declared = "\n".join(f"(defoutput {name} bool)" for name in names)
+    rules = "\n".join(f"(defgoalr (ach {name}) (do {name} true))" for name in names)
+    return f"(plan p)\n{declared}\n{rules}\n(goalem (and {' '.join(f'(ach {name})' for name in names)}))\n"
+
+
+def test_a_row_that_sets_much_takes_lines_of_bounded_width_with_everything_in_them() -> None:
+    said = text(inspect(compiled(loud(60))), ["table"])
+    assert max(map(len, said.splitlines())) <= WIDTH
+    assert all(f"light-{k}=true" in said and f"(ach light-{k})" in said for k in range(60))
+
+
+def test_of_what_a_row_sets_the_page_folds_all_but_the_first() -> None:
+    assert "<summary>54 more</summary>" in page(inspect(compiled(loud(60))))
+    assert "more</summary>" not in page(inspect(compiled(loud(8))))
+
+
+@pytest.mark.parametrize("part", ["table", "percepts"])
+def test_a_drawing_of_more_conditions_than_columns_lists_them(part: str) -> None:
+    drawn = draw(inspect(compiled(many(200))), part)
+    width = int(ElementTree.fromstring(drawn).attrib["width"])
+    assert "rotate" not in drawn and "(ach r199)" in drawn and width < 900

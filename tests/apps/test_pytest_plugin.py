@@ -147,6 +147,24 @@ def test_a_branch_that_can_never_be_taken_fails_with_the_situations_of_the_other
     )
 
 
+def test_one_dead_branch_fails_exactly_the_item_of_its_rule_and_says_why(pytester: pytest.Pytester, run) -> None:
+    write(pytester, DEAD + TESTS)
+    result = run("--rplan", "-rfE")
+    result.assert_outcomes(passed=3, failed=1)
+    failed = [line for line in result.stdout.lines if line.startswith(("FAILED", "ERROR"))]
+    assert [line.partition(" - ")[0] for line in failed] == ["FAILED guard.rplan::(ach move)/branches"]
+    result.stdout.fnmatch_lines(
+        [
+            "*guard.rplan:11:1: not every branch of (ach move) can be taken",
+            "  - 13: (not (lost)) → (do action (flee)): can never be taken",
+            "warning?always-true?: `(lost)` is always true where it is asked",
+            "  --> *guard.rplan:12:9 *after what is asked here",
+            "  --> *guard.rplan:13:58 *so this is never done",
+        ]
+    )
+    assert sum(line.endswith("can never be taken") for line in result.stdout.lines) == 1
+
+
 def test_a_rule_that_nothing_asks_for_fails(pytester: pytest.Pytester, run) -> None:
     write(pytester, HEAD + "(defgoalr (ach nap) (do action (rest)))")
     result = run("--rplan")

@@ -13,6 +13,7 @@ from rplan.apps.simulation import load_world, simulate
 from rplan.apps.testing import PlanUnderTest
 from rplan.apps.trying import TicksError
 from rplan.apps.wiring import compile_file
+from rplan.runtime.tick import Decision
 
 pytest_plugins = ["pytester"]
 
@@ -148,6 +149,36 @@ def test_an_output_that_there_is_not_is_one_clear_line(guard: PlanUnderTest) -> 
         guard.given().expect(acton="flee")
     with pytest.raises(TicksError, match="there are: action, alarm-on, limit"):
         guard.given().expect(x="flee")
+
+
+# --- golden ticks -----------------------------------------------------------------------------------
+
+QUIET = '{"outputs": {"action": null, "alarm-on": null, "limit": null}'
+ALARM = '{"outputs": {"action": "(flee)", "alarm-on": "true", "limit": null}}'
+
+
+def test_golden_ticks_beside_the_plan_are_compared_and_counted(guard: PlanUnderTest, tmp_path: Path) -> None:
+    (tmp_path / "guard.ticks").write_text(f'["near"]\n{QUIET}}}\n{{}}\n{{}}\n{{}}\n{ALARM}\n', encoding="utf-8")
+    seen: list[Decision] = []
+    plan = PlanUnderTest(guard.compiled, watch=seen.append)
+    with pytest.raises(AssertionError, match="2 of 4 ticks differ") as error:
+        plan.golden("guard.ticks")
+    assert "guard.ticks:3: tick 1\n    + nothing stands there yet" in str(error.value)
+    (tmp_path / "guard.ticks").write_text(f'["near"]\n{QUIET}}}\n{{}}\n{ALARM}\n', encoding="utf-8")
+    with pytest.raises(AssertionError, match="1 of 2 ticks differ") as error:
+        plan.golden(tmp_path / "guard.ticks")
+    assert "    - outputs: action = (flee)" in str(error.value)
+    assert len(seen) == 4 + 2
+
+
+def test_where_a_slip_was_made_golden_ticks_are_compared_without_their_way(
+    guard: PlanUnderTest, tmp_path: Path
+) -> None:
+    text = f'["near"]\n{QUIET}, "way": {{"rules": ["(maint nothing)"]}}}}\n'
+    (tmp_path / "slip.ticks").write_text(text, encoding="utf-8")
+    PlanUnderTest(guard.compiled, ways=False).golden("slip.ticks")
+    with pytest.raises(AssertionError, match=r"- way: \(maint nothing\)"):
+        guard.golden("slip.ticks")
 
 
 # --- episodes and recordings ------------------------------------------------------------------------

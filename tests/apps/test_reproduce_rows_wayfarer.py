@@ -11,14 +11,18 @@ import pytest
 from PIL import Image
 
 from behaviours.interface import STOP, Odometry, Pose, Reading, View
+from rplan.apps.files import plans_folder
 from rplan.apps.reproduce import experiment, page, report, showing
 from rplan.apps.reproduce.experiment import Asked
 from rplan.apps.reproduce.report import Result
-from rplan.apps.reproduce.row import Case, Drawn, Finding, Measures, Moment, Row, Seen
+from rplan.apps.reproduce.row import Case, Drawn, Finding, Measures, Moment, Preset, Row, Seen
 from rplan.apps.reproduce.rows import every_row, w1, w2, w3
 from rplan.apps.reproduce.showing import Shown
 from rplan.apps.sweep.work import Change
-from sim.judge import Times, Verdict
+from sim.judge import Stage, Times, Verdict
+from sim.noise import chance
+from sim.scenarios.format import load
+from sim.scenarios.layout import distance, lay_out
 from sim.world import Touch
 
 
@@ -32,7 +36,7 @@ def view(x: float, y: float, theta: float = 0.0) -> View:
 
 def seen(moments: Sequence[Moment], *, done: bool = True, contacts: tuple[Touch, ...] = ()) -> Seen:
     end = moments[-1].time if moments else 0.0
-    stage = "done" if done else "going round"
+    stage: Stage = "done" if done else "going round"
     return Seen(
         Verdict("round", done, "", stage, Times(), end, 110.0, contacts, 0.3, (), 1.0 if done else 0.4), 0.1, moments
     )
@@ -201,22 +205,46 @@ def alleys(name: str, trapped: int, of: int) -> list[Measures]:
         ("paper", w3.WITHOUT, 20, "missed", w3.HELD),
         ("paper", w3.WITH, 1, "met", ""),
         ("paper", w3.WITH, 4, "missed", w3.STILL),
+        ("paper", w3.DEEP, 5, "missed", w3.STILL),
         ("modern", w3.WITHOUT, 20, "met", ""),
         ("modern", w3.WITH, 0, "met", ""),
         ("modern", w3.WITH, 1, "missed", w3.STILL),
     ],
 )
 def test_a_third_is_trapped_without_the_path_and_none_with_it(
-    preset: experiment.Preset, name: str, trapped: int, judgement: str, why: str
+    preset: Preset, name: str, trapped: int, judgement: str, why: str
 ) -> None:
     (finding,) = w3.judge(preset, alleys(name, trapped, 24))
     assert (finding.judgement, finding.because, finding.seed) == (judgement, why, 0)
 
 
 def test_there_are_twenty_four_alleys_unless_fewer_are_asked_for() -> None:
-    assert [len(case.seeds) for case in w3.cases(20)] == [24, 24]
-    assert [len(case.seeds) for case in w3.cases(3)] == [3, 3]
+    assert [len(case.seeds) for case in w3.cases(20)] == [24, 24, 24]
+    assert [len(case.seeds) for case in w3.cases(3)] == [3, 3, 3]
     assert w3.cases(1)[1].changes == w3.FORGOTTEN
+
+
+# --- worlds -------------------------------------------------------------------------------------------
+
+WORLDS = plans_folder() / "perimeter" / "worlds"
+
+
+@pytest.mark.parametrize("name", ["auxiliary", "bare", "headquarters", "alley"])
+def test_the_robot_starts_one_to_two_metres_from_the_wall_to_its_left(name: str) -> None:
+    scenario = load(WORLDS / f"{name}.yaml")
+    for seed in range(8):
+        layout = lay_out(scenario, chance(seed).layout)
+        walls = [thing for thing in layout.things if thing.kind in ("box", "outline")]
+        gap = min(distance((layout.start.x, layout.start.y), wall.outline, wall.pose) for wall in walls)
+        assert 1 <= gap <= 2 and abs(layout.start.theta) < 0.15
+
+
+def test_twenty_four_alleys_differ_within_their_bounds() -> None:
+    scenario = load(WORLDS / "alley.yaml")
+    things = [lay_out(scenario, chance(seed).layout).things for seed in range(24)]
+    mouths, depths = [-11 - right.pose.y for _, right, _ in things], [back.pose.x - 0.2 for *_, back in things]
+    assert 2.4 <= min(mouths) < 2.6 and 3.0 < max(mouths) <= 3.2
+    assert 3.0 <= min(depths) < 3.5 and 5.5 < max(depths) <= 6.0
 
 
 # --- cases that change the plan, and maps -------------------------------------------------------------
@@ -224,9 +252,10 @@ def test_there_are_twenty_four_alleys_unless_fewer_are_asked_for() -> None:
 
 def test_a_case_may_change_the_plan() -> None:
     (batch,) = experiment.batches([Asked(w3.ROW, "paper")], 1)
-    with_path, without = batch.work.variants
+    with_path, without, deep = batch.work.variants
     assert without.changes == (*with_path.changes, *w3.FORGOTTEN)
     assert (with_path.scenario, without.scenario) == ("alley", "W3, without it")
+    assert "between: [6.2, 9.2]" in deep.text and deep.changes == with_path.changes
 
 
 def test_a_run_with_a_changed_plan_is_seen_through_reproduce() -> None:

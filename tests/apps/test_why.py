@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from time import process_time
-from typing import Any
+from typing import Any, cast
 
 import pytest
 from click.testing import CliRunner, Result
@@ -13,9 +14,12 @@ from click.testing import CliRunner, Result
 from rplan import Controller, why, why_not
 from rplan.apps.cli import cli
 from rplan.apps.simulation import load_world
-from rplan.apps.wiring import compile_file, crew, decider
+from rplan.apps.wiring import compile_file, compile_source, crew, decider, plan_header
+from rplan.lang.source import Source
+from rplan.runtime.controller import Tick
+from rplan.runtime.trace import Trace, texts
 from sim.environment import Environment
-from sim.recording import Recorder
+from sim.recording import Recorder, read
 
 ROOT = Path(__file__).parents[2]
 MAKE_ROOM = ROOT / "plans" / "make_room" / "make_room.rplan"
@@ -143,7 +147,7 @@ def test_included_texts_come_from_the_recording(tmp_path: Path) -> None:
     assert "rules.rplan:" in run("why", path, "--at", "0.5").stdout
 
 
-def record(path: Path, header: dict[str, object], *ticks: dict[str, object]) -> Path:
+def record(path: Path, header: Mapping[str, object], *ticks: Mapping[str, object]) -> Path:
     with Recorder(path, {"plan": header} if header else {}) as recorder:
         for n, tick in enumerate(ticks):
             recorder.tick(n / 10, {}, json.dumps(tick))
@@ -153,7 +157,7 @@ def record(path: Path, header: dict[str, object], *ticks: dict[str, object]) -> 
 def test_recordings_that_cannot_be_asked_are_clear_errors(tmp_path: Path) -> None:
     text = {"file": "p.rplan", "text": "(goalem (when (a) (do x on)))"}
     tick: dict[str, object] = {"inputs": "1", "registers": "", "outputs": {}, "sent": {}}
-    cases: list[tuple[dict[str, object], dict[str, object], str]] = [
+    cases: list[tuple[Mapping[str, object], Mapping[str, object], str]] = [
         ({}, tick, "holds no plan"),
         (text | {"inputs": ["(b)"]}, tick, "reads the plan in it otherwise"),
         (text | {"inputs": ["(a)"]}, tick | {"inputs": "11"}, "reads the plan in it otherwise"),
@@ -176,6 +180,111 @@ def test_what_a_channel_was_sent_may_be_any_value(tmp_path: Path) -> None:
     found = told("why", record(tmp_path / "run.mcap", header, *ticks), "--at", "0.1")
     assert found["sent"] == {"x": "[0, 2]"}
     assert found["since"]["x"]["before"] == "[0, 1]"
+
+
+def long(path: Path) -> Path:
+    """A plan with a number that decides, an open output and one that is kept, and what they were in 50 ticks."""
+    text = """(plan far) (declare (distance) (number m)) (declare (seen) bool)
+      (defoutput action symbol :idle stand) (defoutput note symbol) (defoutput kept symbol :hold)
+      (goalem (prio-and (when (< distance 2m) (do action back)) (when (seen) (do note hello))
+                        (when (latch (seen) (> distance 2.5m)) (do kept on))))"""
+    compiled = compile_source(Source("far.rplan", text))
+    decide, trace = decider(compiled), Trace(compiled.ways)
+    with Recorder(path, {"plan": plan_header(compiled)}) as recorder:
+        for n in range(50):
+            percepts: dict[str, bool | float] = {"(distance)": 3.1 - n / 25.1, "(seen)": n % 7 == 3}
+            decision = decide.tick(percepts)
+            values = texts(decision.sent)
+            tick: Tick[Any] = Tick(n, percepts, decision, values, (), (), (), {}, None)
+            recorder.tick(n / 10, {"t": n / 10}, trace.note(tick))
+        recorder.tick(5.0, {"t": 5.0}, "null")
+    return path
+
+
+def test_the_numbers_behind_comparisons_stand_in_a_recording_and_are_told(tmp_path: Path) -> None:
+    path = long(tmp_path / "run.mcap")
+    said = run("why", path, "--at", "0").stdout
+    assert "  (< (distance) 2m) is false ((distance) = 3.1m)\n" in said
+    assert "(do action back), far.rplan:3: (< (distance) 2m) is false ((distance) = 3.1m)" in said
+    found = told("why", path, "--at", "1.2")
+    exact = 3.1 - 12 / 25.1
+    assert found["percepts"] == {"(distance)": exact, "(seen)": False}, "to the last bit"
+    assert {"text": "(< (distance) 2m)", "value": False, "numbers": {"(distance)": exact}} in found["literals"]
+    assert {"text": "(seen)", "value": False} in found["literals"]
+    assert "(distance) = 2.62m" in run("why", path, "--at", "1.2").stdout
+
+
+def test_the_number_to_change_is_named_for_a_recording(tmp_path: Path) -> None:
+    path = long(tmp_path / "run.mcap")
+    said = run("why-not", path, "--at", "0", "action=back").stdout
+    assert (
+        "  (distance) so that (< (distance) 2m) is true and (> (distance) 2.5m) is false, such as 1m, not 3.1m" in said
+    )
+    change = told("why-not", path, "--at", "0", "action=back")["changes"][0]
+    assert (change["was"], change["becomes"]) == (3.1, 1.0)
+
+
+def test_numbers_are_told_with_as_many_digits_as_their_comparisons_need(tmp_path: Path) -> None:
+    plan = tmp_path / "near.rplan"
+    plan.write_text(
+        "(declare (a) (number m)) (declare (b) (number m)) (goalem (when (and (< a 2m) (< a b)) (do x on)))"
+    )
+    assert "((a) = 1.9999m, (b) = 2m)" in run("why", plan, "--given", "a=1.9999, b=1.99994").stdout
+    assert "((a) = 1.23m)" in run("why", plan, "--given", "a=1.23456, b=5").stdout
+
+
+def test_a_recording_without_the_numbers_is_explained_as_before(tmp_path: Path) -> None:
+    whole = long(tmp_path / "whole.mcap")
+    path = tmp_path / "old.mcap"
+    header: Any = read(whole).header
+    with Recorder(path, header) as recorder:
+        for tick in read(whole).ticks:
+            plan: Any = tick["plan"]
+            without = None if plan is None else {key: value for key, value in plan.items() if key != "percepts"}
+            recorder.tick(cast(float, tick["t"]), {}, json.dumps(without))
+    assert "  (< (distance) 2m) is false\n" in run("why", path, "--at", "0").stdout
+    found = told("why", path, "--at", "0")
+    assert found["percepts"] is None
+    assert found["since"] == told("why", whole, "--at", "0")["since"]
+    change = told("why-not", path, "--at", "0", "action=back")["changes"][0]
+    assert change["was"] is None and change["comparisons"][0] == {"text": "(< (distance) 2m)", "value": True}
+
+
+@pytest.mark.parametrize("number", [1.0, "far", True, None])
+def test_numbers_that_do_not_fit_what_was_decided_are_told(number: object, tmp_path: Path) -> None:
+    header: dict[str, object] = {
+        "file": "p.rplan",
+        "text": "(declare (d) (number m)) (goalem (when (< d 2m) (do x on)))",
+        "inputs": ["(< (d) 2m)"],
+    }
+    tick = {"inputs": "0", "registers": "", "outputs": {"x": None}, "sent": {"x": None}, "percepts": {"(d)": number}}
+    assert "reads the plan in it otherwise" in wrong("why", record(tmp_path / "run.mcap", header, tick), "--at", "0")
+
+
+def test_since_when_is_what_one_finds_going_through_all_ticks(tmp_path: Path) -> None:
+    path = long(tmp_path / "run.mcap")
+    last: dict[str, str | None] = {}
+    since: dict[str, dict[str, object]] = {}
+    for tick in [*read(path).ticks][:-1]:
+        number, time, plan = cast(int, tick["tick"]), cast(float, tick["t"]), cast(Any, tick["plan"])
+        shown = {name: value or plan["sent"][name] for name, value in plan["outputs"].items()}
+        for name, value in shown.items():
+            if name not in last or last[name] != value:
+                first = name not in last
+                since[name] = {"tick": number, "time": time, "before": last.get(name), "first": first}
+        last = shown
+        if number % 3 == 1 or number > 45:
+            assert told("why", path, "--at", str(time))["since"] == since, number
+
+
+def test_a_recording_that_was_cut_short_is_explained_as_far_as_it_goes(tmp_path: Path) -> None:
+    path = long(tmp_path / "run.mcap")
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    ticks = [*read(path).ticks]
+    last = cast(float, ticks[-1]["t"])
+    assert 1 < last < 4.9
+    assert told("why", path, "--at", str(last))["tick"] == len(ticks) - 1
+    assert f"lasts from 0 s to {last:g} s" in wrong("why", path, "--at", "4.9")
 
 
 # --- a controller that runs ---------------------------------------------------------------------------

@@ -46,7 +46,8 @@ def test_every_function_of_every_library_is_brought_to_life_by_its_crew() -> Non
     made = crew(plan)
     for library in LIBRARIES.values():
         for function in library.functions:
-            home = {"command": made.competences, "pose": made.values}.get(function.type, made.percepts)
+            sensed = {**made.percepts, **made.values}  # a value may be of any type
+            home = {"command": made.competences, "pose": made.values}.get(function.type, sensed)
             assert function.name in home
     assert made.safe == STOP
 
@@ -73,6 +74,16 @@ def test_a_brain_steps_notes_and_forgets_with_a_reset() -> None:
     brain.step(reading(2.0, 0))
     assert brain.tick is not None
     assert (brain.tick.number, brain.tick.started) == (0, ("stop",))
+
+
+@pytest.mark.parametrize("looked_at", [True, False])
+def test_views_are_asked_where_somebody_looks_at_them(looked_at: bool) -> None:
+    plan = compile_source(Source("placed.rplan", PLAN.replace("(use robot)", "(use robot) (use localisation)")))
+    brain = PlanBrain(plan, looked_at=looked_at)
+    assert brain.step(reading(0.0, 0)) == STOP
+    assert brain.tick is not None
+    assert ("believed-pose" in brain.tick.shown) is looked_at
+    assert ("believed-pose" in brain.note()) is looked_at
 
 
 def test_a_recording_says_of_its_plan_what_a_reader_needs() -> None:

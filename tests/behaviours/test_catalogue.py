@@ -20,13 +20,20 @@ def test_the_libraries_are_there():
     assert NAMES == [
         "drive",
         "find-and-fetch",
+        "flippers",
         "ir-search",
+        "localisation",
+        "mapping",
         "natigation",
         "patrol",
+        "perimeter",
+        "recent-path",
         "robot",
         "runaway",
         "sensors",
+        "stasis",
         "stereo-search",
+        "svfh",
     ]
     with pytest.raises(TypeError):
         LIBRARIES["mine"] = library("robot")
@@ -35,7 +42,8 @@ def test_the_libraries_are_there():
 @pytest.mark.parametrize("name", NAMES)
 def test_every_word_is_brought_to_life_as_what_it_was_offered(name):
     (offer,), _ = built(name)
-    by_type = {"command": offer.competences, "pose": offer.values, "bool": offer.percepts, "number": offer.percepts}
+    numbers = {**offer.percepts, **offer.values}  # a percept, or what a channel of numbers is filled with
+    by_type = {"command": offer.competences, "pose": offer.values, "bool": offer.percepts, "number": numbers}
     for function in library(name).functions:
         assert function.name in by_type[function.type]
     assert len(library(name).functions) == len(offer.percepts) + len(offer.values) + len(offer.competences)

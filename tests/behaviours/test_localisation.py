@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -206,6 +207,17 @@ def test_without_a_gyroscope_the_filter_learns_how_much_the_tracks_scrub():
     before = place.heading
     fed(place, *(reading(n, told[n]) for n in range(1201, 1301)))
     assert wrap(place.heading - before - 3.0) == pytest.approx(0.0, abs=math.radians(8))
+
+
+def test_what_iron_adds_here_and_there_is_taken_out_in_part():
+    poses = drive([(0.5, 0.1, 1800)])
+    field = [0.036 * (math.sin(p.x / 6 + 1) + math.sin(p.y / 6 + 2)) for p in poses]
+    clean = noisy(poses, np.random.default_rng(7), bias=0.0005)
+    askew = [
+        replace(r, compass=replace(r.compass, heading=r.compass.heading + f)) for r, f in zip(clean, field, strict=True)
+    ]
+    raw, smooth = headings(PAPER, askew, poses), headings(MODERN, askew, poses)
+    assert np.std(smooth) < 0.6 * np.std(raw)
 
 
 @pytest.mark.parametrize("settings", [PAPER, MODERN])

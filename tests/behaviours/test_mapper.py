@@ -196,15 +196,16 @@ def test_the_rate_is_what_was_sent_in_the_time_there_was(seen):
     assert 100 < mapper.rate() < 2000
 
 
-def test_patches_come_as_often_as_asked_for(seen):
+@pytest.mark.parametrize(("every", "due"), [(0.5, [0.0, 0.5, 1.0, 1.5]), (0.3, [0.0, 0.3, 0.6, 0.9, 1.2, 1.5])])
+def test_patches_come_as_often_as_asked_for(seen, every, due):
     stamps = []
     place = Localisation(COMPASS)
-    mapper = Mapper(MapperSettings(every=0.5), place)
-    for reading in seen[:40]:
+    mapper = Mapper(MapperSettings(every=every), place)
+    for n, reading in enumerate(seen[:20]):
         place.update(reading, {}, {})
-        mapper.update(reading, {}, {})
+        mapper.update(replace(reading, stamp=n * 0.1), {}, {})
         stamps += [] if mapper.patch is None else [round(reading.stamp, 3)]
-    assert stamps == [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5]
+    assert [stamp for stamp in stamps if stamp < 1.6] == due
 
 
 def test_the_library_gives_its_words_and_the_view(seen):
@@ -225,9 +226,17 @@ def test_the_library_gives_its_words_and_the_view(seen):
     assert offer.views["map"]() is None
 
 
+@pytest.mark.parametrize(("values", "spare"), [({}, 0.0), ({"preset": "paper"}, 0.0), ({"preset": "modern"}, 2.0)])
+def test_the_preset_says_how_beams_are_taken(values, spare):
+    workshop = Workshop()
+    library("mapping").build(values, workshop)
+    assert workshop.estimators[-1].settings.grid.spare == spare
+
+
 @pytest.mark.parametrize(
     ("values", "told"),
     [
+        ({"preset": "best"}, "preset must be paper or modern, not best"),
         ({"by": "gps"}, "by must be hybrid or odometry, not gps"),
         ({"hit": 0.4}, "expected 0 < passed < 0.5 < hit <= surest < 1"),
         ({"surest": 1.0}, "expected 0 < passed < 0.5 < hit <= surest < 1"),

@@ -77,6 +77,14 @@ def test_evidence_adds_up_and_what_goes_away_fades():
     assert row(grid_of(scan([1.0]), *[scan([3.0])] * 4), 6)[5] < 50
 
 
+def test_evidence_that_cancels_out_is_still_known():
+    grid = grid_of(scan([1.0]), scan([3.0]), hit=0.6, passed=0.4)
+    assert row(grid, 6)[5] == 50
+    assert grid.known == 16
+    grid.add(scan([3.0]), HERE)
+    assert grid.known == 16
+
+
 def test_no_cell_gets_surer_than_the_surest():
     grid = grid_of(*[scan([1.0])] * 100)
     assert row(grid, 6) == [3, 3, 3, 3, 3, 97]
@@ -132,6 +140,29 @@ def test_what_lies_too_far_off_is_not_kept():
 def test_what_was_never_looked_at_is_unknown():
     assert row(OccupancyGrid(OccupancySettings()), 3) == [UNKNOWN] * 3
     assert row(grid_of(scan([1.0])), 3, row=5000) == [UNKNOWN] * 3
+
+
+def along_a_wall(**settings):
+    """What is seen of a wall 1.5 m to the left on a way of 12 m along it."""
+    bearings = np.arange(1, 362) / 361 * math.tau - math.pi
+    ranges = np.where(bearings > 0.01, np.minimum(1.53 / np.sin(np.maximum(bearings, 0.01)), 20.0), 20.0)
+    grid, chance = OccupancyGrid(OccupancySettings(**settings)), np.random.default_rng(8)
+    for k in range(121):
+        seen = np.where(ranges < 20.0, ranges + 0.02 * chance.standard_normal(361), 20.0)
+        grid.add(scan(seen, bearings), Pose(k * 0.1, 0.0, 0.0))
+    wall = grid.percents(Region(0, 7, 60, 1))[0]
+    return float(np.mean((wall > 50) & (wall <= 100)))
+
+
+def test_beams_that_graze_a_wall_wear_it_away_unless_the_last_cells_are_spared():
+    worn, whole = along_a_wall(), along_a_wall(spare=2.0)
+    assert whole > max(worn, 0.95)
+
+
+def test_cells_that_are_spared_are_left_as_they_were():
+    assert row(grid_of(scan([1.0]), spare=2.0), 7) == [40, 40, 40, UNKNOWN, UNKNOWN, 70, UNKNOWN]
+    assert row(grid_of(scan([0.1]), spare=2.0), 3) == [70, UNKNOWN, UNKNOWN]
+    assert row(grid_of(scan([2.0], far=2.0), spare=2.0), 12) == [40] * 10 + [UNKNOWN] * 2
 
 
 def test_a_room_is_mapped_with_its_walls_where_they_are():

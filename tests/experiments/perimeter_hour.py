@@ -1,11 +1,13 @@
 """An hour along the walls of imported worlds: whether the robot touches anything, and what it gets to see.
 
-Takes: world files that can be imported (Stage's cave is `simple.world`, its laboratory `autolab.world`), a seed, presets.
-Gives: a line for each: contacts, distance, share of the reachable wall that the lidar met, simulated seconds a second.
+Takes: world files that can be imported (Stage's cave is `simple.world`, its laboratory `autolab.world`), a seed,
+presets. Gives: a line for each: contacts, distance, share of the reachable wall that the lidar met, simulated seconds a
+second.
 Leaves alone: how it is done. `python tests/experiments/perimeter_hour.py cave.world --minutes 60 --seed 0`.
 
-The robot is a Pioneer 3-DX with a lidar that looks all round, where the world's robot starts. Reachable is the wall
-that borders on free ground to which the robot's middle can come to within `BESIDE`.
+The robot is a Pioneer 3-DX with a lidar that looks all round 0.2 m above the floor, lower than the other robots of the
+laboratory are high. It starts where the world's robot does. Reachable is the wall beside which a disc of the stand-off
+can come; `--alone` takes the other robots away, which in the laboratory stand about the robot and in doorways.
 """
 
 from __future__ import annotations
@@ -34,19 +36,24 @@ from sim.world import Touch, World
 
 PLAN = Path(__file__).parents[2] / "plans" / "perimeter" / "perimeter.rplan"
 CELL = 0.05  # [m] of the map on which walls are counted
-ROUND, BESIDE = 0.3, 0.5  # [m] radius of the robot; how far beyond its hull's reach a wall counts as reachable
+BESIDE = 0.2  # [m] more than the stand-off from where the disc can be a wall counts as reachable
 SEEN = 0.1  # [m] from where a beam ended, a wall has been seen
 LOOKS = 2.0  # [s] from look to look
-ROBOT = {"model": "pioneer", "lidar": {"field_of_view": math.tau, "beams": 360}}
+SENSORS = [
+    {"kind": "lidar", "height": 0.2, "beams": 360, "max_range": 8.0, "sd": 0.01, "period": 0.1},
+    {"kind": "odometry", "scale_sd": 0.01, "turn_sd": 0.004},
+]
+ROBOT = {"model": "pioneer", "sensors": SENSORS}
 Bools = NDArray[np.bool_]
 
 
-def scenario(path: Path) -> Scenario:
-    """The world with the Pioneer in it."""
+def scenario(path: Path, alone: bool = False) -> Scenario:
+    """The world with the Pioneer in it; alone: without other robots."""
     imported = read(path, Options())
-    was = imported.document["robot"]
-    robot = ROBOT | {"start": was["start"], "heading": was["heading"]}
-    return loads(text_of(replace(imported, document=imported.document | {"robot": robot})), path.name)
+    document = imported.document
+    robot = ROBOT | {"start": document["robot"]["start"], "heading": document["robot"]["heading"]}
+    things = [thing for thing in document["things"] if not (alone and thing["kind"] == "disc")]
+    return loads(text_of(replace(imported, document=document | {"robot": robot, "things": things})), path.name)
 
 
 def plan(preset: str, side: str, stand_off: float, cruise: float) -> Compiled:
@@ -92,7 +99,8 @@ class Watch:
     def cells(self, points: NDArray[np.float64]) -> NDArray[np.intp]:
         """Of points in the world, those inside the bounds."""
         at = np.floor((points - self._corner) / CELL).astype(np.intp)
-        return at[((at >= 0) & (at < self.shape)).all(axis=1)]
+        inside: NDArray[np.intp] = at[((at >= 0) & (at < self.shape)).all(axis=1)]
+        return inside
 
     def mark(self, grid: Bools, points: NDArray[np.float64]) -> None:
         at = self.cells(points)
@@ -134,13 +142,13 @@ def walls(world: World, watch: Watch) -> Bools:
     return grid
 
 
-def reachable(wall: Bools, watch: Watch, start: Pose) -> Bools:
-    """The wall beside which the robot can come from where it starts."""
+def reachable(wall: Bools, watch: Watch, start: Pose, stand_off: float) -> Bools:
+    """The wall beside which a disc of the stand-off can come from where the robot starts."""
     room = ndimage.distance_transform_edt(~wall) * CELL
-    parts, _ = ndimage.label(room > ROUND)
     x, y = watch.cells(np.array([[start.x, start.y]]))[0]
-    part = parts == parts[x, y] if parts[x, y] else np.zeros_like(wall)
-    near = ndimage.distance_transform_edt(~part) * CELL <= BESIDE
+    parts, _ = ndimage.label(room > min(stand_off, float(room[x, y]) - CELL))
+    part = parts == parts[x, y]
+    near = ndimage.distance_transform_edt(~part) * CELL <= stand_off + BESIDE
     free, _ = ndimage.label(~wall)
     border = ndimage.binary_dilation(near & (free == free[x, y]), np.ones((3, 3)))
     return np.asarray(wall & border, dtype=bool)
@@ -151,14 +159,13 @@ def drove_into(touches: tuple[Touch, ...]) -> str:
     return ", ".join(f"{touch.thing} at {touch.time:.1f} s" for touch in touches[:5])
 
 
-def hour(path: Path, compiled: Compiled, minutes: float, seed: int) -> tuple[str, Watch]:
+def hour(world: Scenario, compiled: Compiled, given: argparse.Namespace) -> tuple[str, Watch]:
     """Drive; what there is to be said of it."""
-    world = scenario(path)
-    episode = Episode(world, seed)
+    episode = Episode(world, given.seed)
     watch = Watch(episode.world, world.bounds)
-    wall = reachable(walls(episode.world, watch), watch, episode.world.robot.pose)
+    wall = reachable(walls(episode.world, watch), watch, episode.world.robot.pose, given.stand_off)
     began = time.process_time()
-    verdict = episode.run(PlanBrain(compiled), minutes * 60.0, watch)
+    verdict = episode.run(PlanBrain(compiled), given.minutes * 60.0, watch)
     took = time.process_time() - began
     seen = ndimage.binary_dilation(watch.met, iterations=round(SEEN / CELL))
     share = float((wall & seen).sum()) / max(1, int(wall.sum()))
@@ -178,14 +185,15 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0, help="of the run")
     parser.add_argument("--preset", choices=("paper", "modern"), action="append", help="which (both)")
     parser.add_argument("--side", choices=("left", "right"), default="left", help="where the wall is kept")
-    parser.add_argument("--stand-off", type=float, default=0.6, help="from the wall [m]")
+    parser.add_argument("--stand-off", type=float, default=0.5, help="from the wall [m]")
     parser.add_argument("--cruise", type=float, default=0.4, help="greatest speed [m/s]")
+    parser.add_argument("--alone", action="store_true", help="without other robots")
     parser.add_argument("--track", action="store_true", help="print where the robot is every minute")
     given = parser.parse_args()
     for path in given.worlds:
         for preset in given.preset or ("paper", "modern"):
             compiled = plan(preset, given.side, given.stand_off, given.cruise)
-            said, watch = hour(path, compiled, given.minutes, given.seed)
+            said, watch = hour(scenario(path, given.alone), compiled, given)
             print(f"{path.name}, {preset}: {said}", flush=True)
             if given.track:
                 print(*(f"({x:.2f}, {y:.2f}, {theta:.2f})" for x, y, theta in watch.track[::30]))

@@ -305,3 +305,11 @@ def test_a_competence_that_reads_a_channel_filled_after_it_is_warned_of() -> Non
 def test_declared_outputs_come_first_and_others_as_they_appear() -> None:
     plan = compiled("(defoutput last bool) (goalem (and (do b true) (do a true) (do last true)))")
     assert [output.name for output in plan.goals.outputs] == ["last", "b", "a"]
+
+
+@pytest.mark.rule("L6")
+def test_a_library_that_works_unasked_may_be_used_for_what_it_does_of_itself() -> None:
+    text = "(use other) (goalem (do lamp on))"
+    assert "unused" in [d.code for d in wrong(text)]
+    mapper = LibrarySignature("other", OTHER.functions, (), works_unasked=True)
+    assert "unused" not in [d.code for d in findings(text, {"other": mapper})]

@@ -10,9 +10,8 @@ import click
 
 from rplan.apps import talk
 from rplan.apps.asking import Moment, moment, with_moment
-from rplan.goals.condition import Comparison, percept_terms
-from rplan.lang.units import canonical_number
 from rplan.runtime.trace import way_json
+from rplan.ways.kept import Literal
 from rplan.ways.lost import Lost
 from rplan.ways.way import Act
 from rplan.ways.why import Reasons, Why
@@ -41,6 +40,13 @@ def heading(tick: Moment) -> str:
     return f"{tick.compiled.goals.name} at {tick.time:g} s (tick {tick.tick})"
 
 
+def by_hand(tick: Moment) -> Iterator[str]:
+    """The percepts that someone forced."""
+    readable = tick.readable()
+    told = (f"{name} = {readable.get(name, str(value).lower())}" for name, value in tick.forced.items())
+    yield from [f"  forced by hand: {', '.join(told)}"] if tick.forced else []
+
+
 def _text(tick: Moment, why: Why) -> Iterator[str]:
     yield click.style(heading(tick), bold=True)
     if why.way.hole:
@@ -48,6 +54,7 @@ def _text(tick: Moment, why: Why) -> Iterator[str]:
     for act in why.way.acts:
         yield f"  {act.output} is {act.value}: set by {act.rule}, {tick.place(act.span)}{_since(tick, act)}"
     yield from _open(tick, why)
+    yield from by_hand(tick)
     if why.served:
         yield click.style("by way of", bold=True)
     for rule in why.served:
@@ -83,18 +90,16 @@ def _open(tick: Moment, why: Why) -> Iterator[str]:
         yield f"  open: {', '.join(words)}"
 
 
-def _values(tick: Moment, text: str) -> str:
-    """The numbers that a comparison asks, where they are known."""
-    atom = next((one for one in tick.compiled.ways.atoms if one.text == text), None)
-    if tick.percepts is None or not isinstance(atom, Comparison):
-        return ""
-    terms = {term.text: "" if term.type is None else term.type.unit for term in percept_terms(atom)}
-    values = (f"{name} = {canonical_number(float(tick.percepts[name]), unit)}" for name, unit in terms.items())
-    return f" ({', '.join(values)})"
+def _values(tick: Moment, *texts: str) -> str:
+    """The numbers that comparisons ask, where they are known."""
+    readable = tick.readable()
+    values = [f"{name} = {readable[name]}" for name in tick.numbers(texts)]
+    return f" ({', '.join(values)})" if values else ""
 
 
 def _lost_line(tick: Moment, lost: Lost) -> str:
-    return f"  {lost.goal}, {tick.place(lost.span)}: {lost.because}"
+    values = _values(tick, *(one.text for one in lost.literals))
+    return f"  {lost.goal}, {tick.place(lost.span)}: {lost.because}{values}"
 
 
 def _plain(tick: Moment, why: Why) -> dict[str, object]:
@@ -107,20 +112,28 @@ def _plain(tick: Moment, why: Why) -> dict[str, object]:
         "since": {output: asdict(one) for output, one in tick.since.items()},
         "way": way_json(why.way, tick.compiled.source.name),
         "rules": [{"rule": rule.head, "place": talk.place(rule.span)} for rule in why.served],
-        "literals": [asdict(one) for one in why.literals],
+        "percepts": None if tick.percepts is None else dict(tick.percepts),
+        "forced": dict(tick.forced),
+        "literals": [_literal(tick, one) for one in why.literals],
         "smallest": why.smallest,
         "kept": [asdict(one) for one in why.kept],
-        "lost": [_lost(one) for one in why.lost],
+        "lost": [_lost(tick, one) for one in why.lost],
     }
 
 
-def _lost(lost: Lost) -> dict[str, object]:
+def _literal(tick: Moment, literal: Literal) -> dict[str, object]:
+    """The literal, a comparison with the numbers that it asks where they are known."""
+    found = tick.numbers([literal.text])
+    return asdict(literal) | ({"numbers": found} if found else {})
+
+
+def _lost(tick: Moment, lost: Lost) -> dict[str, object]:
     return {
         "goal": lost.goal,
         "reason": lost.reason,
         "because": lost.because,
         "condition": lost.condition,
-        "literals": [asdict(one) for one in lost.literals],
+        "literals": [_literal(tick, one) for one in lost.literals],
         "part_of": lost.part_of,
         "place": talk.place(lost.span),
         "by": talk.place(lost.by),

@@ -10,7 +10,7 @@ import click
 
 from rplan.apps import talk
 from rplan.apps.asking import Moment, moment, split, with_moment
-from rplan.apps.commands.why import heading
+from rplan.apps.commands.why import by_hand, heading
 from rplan.apps.files import InputError
 from rplan.lang.units import BadNumberError, canonical_number, read_number
 from rplan.runtime.trace import way_json
@@ -80,12 +80,14 @@ def _canonical(value: str, known: dict[str, int]) -> str:
 def _text(tick: Moment, wishes: Wanted, found: WhyNot) -> Iterator[str]:
     yield click.style(heading(tick), bold=True)
     wanted = " and ".join(f"{name} open" if value is None else f"{name} = {value}" for name, value in wishes.items())
+    yield from by_hand(tick)
     yield f"{wanted}: {VERDICTS[found.verdict]}"
     units = {term.text: "" if term.type is None else term.type.unit for term in tick.compiled.goals.percepts()}
+    was = tick.readable()
     for past in found.past:
         yield f"  {_past(past)}"
     for change in found.changes:
-        yield f"  {_change(change, units.get(change.percept, ''))}"
+        yield f"  {_change(change, units.get(change.percept, ''), was.get(change.percept, ''))}"
     if found.way is not None and found.verdict != "already":
         yield click.style("and then", bold=True)
     for act in found.way.acts if found.way is not None else ():
@@ -96,12 +98,12 @@ def _past(past: PastChange) -> str:
     return f"{past.was.condition} kept as {past.becomes} before, not {past.was}"
 
 
-def _change(change: Change, unit: str) -> str:
+def _change(change: Change, unit: str, readable: str) -> str:
     if isinstance(change.becomes, bool):
         return f"{change.percept} {'true' if change.becomes else 'false'}, not {'true' if change.was else 'false'}"
     turned = " and ".join(map(str, change.comparisons)) or "it is otherwise"
     number = "" if change.becomes is None else f", such as {canonical_number(change.becomes, unit)}"
-    was = "" if change.was is None else f", not {canonical_number(change.was, unit)}"
+    was = "" if change.was is None else f", not {readable}"
     return f"{change.percept} so that {turned}{number}{was}"
 
 
@@ -112,6 +114,7 @@ def _plain(tick: Moment, wishes: Wanted, found: WhyNot) -> dict[str, object]:
         "t": tick.time,
         "wanted": dict(wishes),
         "verdict": found.verdict,
+        "forced": dict(tick.forced),
         "changes": [asdict(one) for one in found.changes],
         "past": [
             {"condition": one.was.condition, "was": one.was.value, "becomes": one.becomes.value} for one in found.past

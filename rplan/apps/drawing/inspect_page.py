@@ -6,7 +6,7 @@ them. Leaves alone: runs; `rplan replay` shows those.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from html import escape
 from importlib.resources import files
 
@@ -17,6 +17,8 @@ from rplan.apps.drawing.inspect_text import RANKED, WIDEST
 
 UNFOLDED = 80
 """A tree of no more places than these is shown whole; of a larger one the rules are folded."""
+FEW = 6
+"""Of more outputs or rules in a row than these (and two) the others are folded."""
 
 
 def page(inspection: Inspection) -> str:
@@ -45,7 +47,7 @@ def page(inspection: Inspection) -> str:
 def _table(inspection: Inspection) -> Iterator[str]:
     table = inspection.table
     columns = table.conditions if len(table.conditions) <= WIDEST else ()
-    names = "".join(f'<th class="lean"><div>{escape(name)}</div></th>' for name in columns)
+    names = "".join(f'<th class="lean"><div title="{escape(name)}">{escape(name)}</div></th>' for name in columns)
     yield f"<table><thead><tr>{names or '<th>when</th>'}<th>sets</th><th>by</th></tr></thead><tbody>"
     for row in table.rows:
         yield _row(row, columns)
@@ -60,11 +62,20 @@ def _row(row: Row, columns: tuple[str, ...]) -> str:
         cells = "".join(f"<td>{_mark(when.get(name), name)}</td>" for name in columns)
     else:
         cells = f"<td>{' '.join(f'<span class=literal>{_mark(v, n)} {escape(n)}</span>' for n, v in row.when)}</td>"
-    sets = "".join(f"<div>{escape(one)}</div>" for one in row.sets)
+    sets = _few(row.sets)
     said = '<b class="no">hole: no way is open</b>' if row.hole else sets or '<span class="dim">nothing</span>'
     gives = "".join(f'<div class="no">gives up {escape(one)}</div>' for one in row.given_up)
-    by = "".join(f"<div>{escape(one)}</div>" for one in row.rules)
+    by = _few(row.rules)
     return f'<tr class="hit">{cells}<td class="sets">{said}</td><td class="dim">{by}{gives}</td></tr>'
+
+
+def _few(items: Sequence[str]) -> str:
+    """One below the other; of many the first ones, the others folded."""
+    lines = [f"<div>{escape(one)}</div>" for one in items]
+    if len(lines) <= FEW + 2:
+        return "".join(lines)
+    rest = f"<details><summary>{len(lines) - FEW} more</summary>{''.join(lines[FEW:])}</details>"
+    return "".join(lines[:FEW]) + rest
 
 
 def _mark(value: bool | None, name: str) -> str:

@@ -10,11 +10,13 @@ from collections.abc import Iterator, Sequence
 from html import escape
 
 from rplan.apps.drawing.inspect import Branch, Inspection
+from rplan.apps.drawing.inspect_text import WIDEST, WIDTH, listed, percepts_text
 from rplan.apps.drawing.svg import svg as circuit_svg
 
 LINE, INDENT, LETTER, MARGIN = 18.0, 18.0, 6.7, 16.0
 MOST_LINES = 5000
 SHORT = 90
+"""Letters of a text in a drawing; more end in an ellipsis, with all of it as its tooltip."""
 STYLE = """
 text { font: 11px ui-monospace, Menlo, Consolas, monospace; fill: #1c2733; } .head { font: bold 15px sans-serif; }
 .dim { fill: #6b7788; } .rule { font-weight: bold; } .do { fill: #23508e; } .if { fill: #7a4a00; }
@@ -29,6 +31,10 @@ def draw(inspection: Inspection, part: str) -> str:
     match part:
         case "circuit":
             return circuit_svg(inspection.circuit)
+        case "table" if len(inspection.table.conditions) > WIDEST:
+            return _lines(f"{inspection.name}: decision table", list(listed(inspection.table)))
+        case "percepts" if len(_asked(inspection)) > WIDEST:
+            return _lines(f"{inspection.name}: percepts", percepts_text(inspection).splitlines())
         case "table":
             return _matrix(f"{inspection.name}: decision table", *_table(inspection))
         case "percepts":
@@ -89,12 +95,29 @@ def _table(inspection: Inspection) -> tuple[Sequence[str], Rows]:
 
 
 def _percepts(inspection: Inspection) -> tuple[Sequence[str], Rows]:
-    names = tuple(dict.fromkeys(one for reads in inspection.percepts for one in reads.percepts))
+    names = _asked(inspection)
     rows: Rows = [
         (["●" if one in reads.percepts else "" for one in names], reads.rule, ", ".join(reads.memory))
         for reads in inspection.percepts
     ]
     return names, rows
+
+
+def _asked(inspection: Inspection) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(one for reads in inspection.percepts for one in reads.percepts))
+
+
+def _lines(title: str, said: Sequence[str]) -> str:
+    """Lines of text, those that are indented least in bold: what has more columns than an eye can follow."""
+    _check(len(said))
+    lines = []
+    for number, line in enumerate(said):
+        words = line.lstrip()
+        indent, kind = len(line) - len(words), "dim" if line.startswith("    ") and not words[:1].isdigit() else "rule"
+        x, y = MARGIN + LETTER * indent, 50 + LINE * number
+        lines.append(_text(x, y, words, kind, "", WIDTH))
+    widest = max((len(line) for line in said), default=0)
+    return _sheet(title, lines, MARGIN * 2 + LETTER * 1.05 * min(widest, WIDTH + 6), 50 + LINE * len(said))
 
 
 def _matrix(title: str, columns: Sequence[str], rows: Rows) -> str:
@@ -128,8 +151,8 @@ def _check(lines: int) -> None:
         raise ValueError(f"{lines:,} lines are too many to be drawn (at most {MOST_LINES:,}): use --html")
 
 
-def _text(x: float, y: float, said: str, kind: str, tip: str) -> str:
-    short = said if len(said) <= SHORT else f"{said[: SHORT - 1]}…"
+def _text(x: float, y: float, said: str, kind: str, tip: str, longest: int = SHORT) -> str:
+    short = said if len(said) <= longest else f"{said[: longest - 1]}…"
     title = f"<title>{_escaped(tip)}</title>" if tip else ""
     return f'<text class="{kind}" x="{x:g}" y="{y:g}">{title}{_escaped(short)}</text>'
 

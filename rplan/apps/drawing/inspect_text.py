@@ -12,6 +12,8 @@ from rplan.apps.drawing.inspect import Branch, Inspection, Row, Table
 
 WIDEST = 24
 """So many conditions have a column each; of more, each row says those that it asks."""
+WIDTH, LEAST = 110, 50
+"""Letters of a line, and how many at least what stands in it may have, however far it is indented."""
 RANKED = "several rows may hold: one gives way to those above it with which it does not go together"
 MARKS = {True: "✓", False: "✗", None: "·"}
 
@@ -19,7 +21,7 @@ MARKS = {True: "✓", False: "✗", None: "·"}
 def table_text(inspection: Inspection) -> str:
     """The decision table: ✓ must hold, ✗ must not, · does not matter."""
     table = inspection.table
-    lines = list(_columns(table) if len(table.conditions) <= WIDEST else _listed(table))
+    lines = list(_columns(table) if len(table.conditions) <= WIDEST else listed(table))
     if not table.exclusive:
         lines.append(RANKED)
     return "\n".join(lines)
@@ -35,32 +37,47 @@ def _columns(table: Table) -> Iterator[str]:
     for row in table.rows:
         when = dict(row.when)
         marks = " ".join(f"{MARKS[when.get(name)]:>{width}}" for name in table.conditions)
-        yield f"  {marks}  {_sets(row)}".rstrip()
-        yield from (f"  {' ' * len(marks)}  {line}" for line in _about(row))
+        blank = " " * len(marks)
+        lines = [*_sets(row, len(marks) + 4), *_about(row, len(marks) + 4)]
+        yield from (f"  {marks if n == 0 else blank}  {line}".rstrip() for n, line in enumerate(lines))
 
 
-def _listed(table: Table) -> Iterator[str]:
+def listed(table: Table) -> Iterator[str]:
     """Of each row what it does not share with the one above."""
     before: Sequence[tuple[str, bool]] = ()
     for number, row in enumerate(table.rows, start=1):
         same = len(list(takewhile(lambda pair: pair[0] == pair[1], zip(before, row.when, strict=False))))
         literals = [f"{MARKS[value]} {name}" for name, value in row.when[same:]]
         shared = [f"as above up to {row.when[same - 1][0]}"] if same else []
-        yield f"{number:>4}  {_sets(row)}"
-        yield f"      when {', '.join([*shared, *literals]) or 'always'}"
-        yield from (f"      {line}" for line in _about(row))
+        first, *more = _sets(row, 6)
+        yield f"{number:>4}  {first}"
+        whens = _packed([*shared, *literals] or ["always"], "when ", 6)
+        yield from (f"      {line}" for line in (*more, *whens, *_about(row, 6)))
         before = row.when
 
 
-def _sets(row: Row) -> str:
-    return "HOLE" if row.hole else " ".join(row.sets) or "(sets nothing)"
+def _sets(row: Row, indent: int) -> list[str]:
+    return ["HOLE"] if row.hole else _packed(row.sets or ("(sets nothing)",), "", indent, " ")
 
 
-def _about(row: Row) -> Iterator[str]:
+def _about(row: Row, indent: int) -> Iterator[str]:
     if row.rules:
-        yield f"by {', '.join(row.rules)}"
+        yield from _packed(row.rules, "by ", indent)
     if row.given_up:
-        yield f"gives up {', '.join(row.given_up)}"
+        yield from _packed(row.given_up, "gives up ", indent)
+
+
+def _packed(items: Sequence[str], lead: str, indent: int, between: str = ", ") -> list[str]:
+    """As many items on a line as go there, one at least; further lines stand below the first item."""
+    room, blank = max(WIDTH - indent, LEAST) - len(between.rstrip()), " " * len(lead)
+    lines = [lead + items[0]]
+    for item in items[1:]:
+        if len(lines[-1]) + len(between) + len(item) > room:
+            lines[-1] += between.rstrip()
+            lines.append(blank + item)
+        else:
+            lines[-1] += between + item
+    return lines
 
 
 def goals_text(inspection: Inspection) -> str:

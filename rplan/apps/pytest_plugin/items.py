@@ -17,7 +17,7 @@ import pytest
 from rplan.apps.pytest_plugin import shelf_of
 from rplan.apps.pytest_plugin.shelf import Plan, rendered
 from rplan.apps.testing import Moment, said, way_lines
-from rplan.apps.trying import TicksError, blessed, compared, decided, printed, read_golden, try_trial
+from rplan.apps.trying import TicksError, blessed, read_golden, shown, try_golden, try_trial
 from rplan.apps.wiring import decider
 from rplan.goals.goal import RuleInfo, Trial
 from rplan.lang.diagnostic import PlanError, render
@@ -27,8 +27,6 @@ from rplan.ways.prove import Promise, promises, prove
 from rplan.ways.situations import Undecided, describe, nothing, replay
 from rplan.ways.way import taken_way
 
-MOST_TICKS = 3
-"""Golden ticks that differ are shown, so many."""
 MOST_EXPLAINED = 5
 """So many failing rules of a plan are shown with situations; those after them say what can never be taken alone."""
 LARGE = 200
@@ -223,33 +221,13 @@ class TicksItem(PlanItem):
         try:
             plan = shelf_of(self.config).plan(self.parent.plan)
             golden = read_golden(self.path, plan.compiled)
-            decide, trace = decider(plan.compiled), Trace(plan.compiled.ways)
-            lines, differing = [], []
-            for number, tick in enumerate(golden.ticks):
-                decision = decided(decide, golden, tick)
-                plan.watch(decision)
-                lines.append(trace.line(number, decision))
-                differs = ["+ nothing stands there yet"]
-                if tick.expected is not None:
-                    differs = compared(tick.expected, printed(trace, number, decision))
-                if differs:
-                    differing.append("\n".join([f"{self.path.name}:{tick.line}: tick {number}", *_indented(differs)]))
+            stood = try_golden(decider(plan.compiled), Trace(plan.compiled.ways), golden, plan.watch)
         except (PlanError, TicksError, OSError) as error:
             raise FailedError(_readable(error)) from None
-        if differing and self.config.getoption("--rplan-bless"):
-            self.path.write_text(blessed(golden, lines), encoding="utf-8")
-        elif differing:
-            raise FailedError(_shown(differing, len(golden.ticks)))
+        if stood.differing and self.config.getoption("--rplan-bless"):
+            self.path.write_text(blessed(golden, stood.now), encoding="utf-8")
+        elif stood.differing:
+            raise FailedError(shown(stood))
 
     def reportinfo(self) -> tuple[PathLike[str] | str, int | None, str]:
         return self.place(1)
-
-
-def _indented(lines: Iterable[str]) -> list[str]:
-    return [f"    {line}" for line in lines]
-
-
-def _shown(differing: list[str], ticks: int) -> str:
-    more = [f"… and {len(differing) - MOST_TICKS} more"] if len(differing) > MOST_TICKS else []
-    says = f"{len(differing)} of {ticks} ticks differ (- golden, + now; --rplan-bless writes them anew)"
-    return "\n".join([says, *differing[:MOST_TICKS], *more])

@@ -83,7 +83,7 @@ class Shelf:
         known = path.resolve()
         self.opened[known] = None
         if known in self.substitutes:
-            return PlanUnderTest(self.substitutes[known], self.libraries)
+            return PlanUnderTest(self.substitutes[known], self.libraries, ways=False)
         plan = self.plan(path)
         watch: Watch = plan.watch
         return PlanUnderTest(plan.compiled, self.libraries, watch)

@@ -9,9 +9,9 @@ window.live = (() => {
 
   const STYLE = `
     #live { padding: 6px 10px 8px; border-top: 1px solid var(--line); max-height: 40%; overflow: auto; flex: none; }
-    #live h2 { margin: 4px 0; } #live .row { display: flex; align-items: center; gap: 6px; font: 11px/1.7 var(--mono); }
+    #live h2 { margin: 4px 0; } #live .row { display: flex; align-items: center; gap: 4px; font: 11px/1.7 var(--mono); }
     #live .row > span { flex: 1; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
-    #live .row button { padding: 0 7px; border-color: var(--line); font: 11px/1.7 var(--sans); } #live .row button[aria-pressed=true] { background: var(--act); font-weight: 650; }
+    #live .row button { padding: 0 5px; border-color: var(--line); font: 11px/1.7 var(--sans); } #live .row button[aria-pressed=true] { background: var(--act); font-weight: 650; }
     #live .forced > span { color: var(--warn); font-weight: 650; } #live input[type=number] { width: 70px; font: inherit; color: inherit; background: var(--sunk); border: 1px solid var(--line); }
     #said { color: var(--warn); font-weight: 600; } #live details summary { cursor: pointer; font-size: 11px; letter-spacing: .06em; text-transform: uppercase; color: var(--dim); font-weight: 650; }
     #code .breaks::after { content: "●"; position: absolute; left: -1px; color: var(--bad); font-size: 12px; } #code .breakable { cursor: pointer; } #code .breakable:hover { background: var(--lit); }`;
@@ -66,11 +66,11 @@ window.live = (() => {
   function percept([name, kind]) {
     const row = make("div", "row", make("span", "", name)); row.dataset.percept = name; row.firstChild.title = name;
     const button = (words, value) => { const b = make("button", "", words); b.dataset.value = JSON.stringify(value); b.onclick = () => tell({do: "force", percept: name, value}); return b; };
-    if (kind === "truth") row.append(button("as it is", null), button("true", true), button("false", false));
+    if (kind === "truth") row.append(button("as is", null), button("true", true), button("false", false));
     else {
       const given = make("input", ""); given.type = "number"; given.step = "any"; given.setAttribute("aria-label", `${name} forced to`);
       given.onchange = () => tell({do: "force", percept: name, value: given.value === "" ? null : Number(given.value)});
-      row.append(button("as it is", null), given);
+      row.append(button("as is", null), given);
     }
     return row;
   }

@@ -1,9 +1,12 @@
 """A simulation that someone watches and meddles with: run, stop, step, move things, force percepts, break at rules.
 
 Takes: a compiled plan, a scenario, a seed, and wishes. Gives: tick by tick the rows that a page shows, and everything
-so far as the data of a page. Leaves alone: who watches and when ticks happen; see server.py.
+so far as the data of a page; where it is wished, a recording of each run. Leaves alone: who watches and when ticks
+happen; see server.py.
 
-What is watched is the run that `rplan simulate` makes of the same seed, as long as nobody meddles with it.
+What is watched is the run that `rplan simulate` makes of the same seed, as long as nobody meddles with it. A tick is
+recorded when it happens; going back to look at ticks that were writes nothing. A run that is begun anew has a file of
+its own, since what was done by hand cannot be done again.
 """
 
 from __future__ import annotations
@@ -13,8 +16,9 @@ import math
 from collections import deque
 from dataclasses import dataclass, field, replace
 from importlib.metadata import version
+from pathlib import Path
 
-from behaviours.interface import Pose
+from behaviours.interface import STOP, Pose
 from rplan.apps.libraries import Catalogue, catalogue
 from rplan.apps.simulation import World
 from rplan.apps.viewer.forcing import forcing
@@ -24,7 +28,7 @@ from rplan.driver import Compiled
 from rplan.runtime.encode import wrong_number
 from sim.episode import Episode
 from sim.raycast import Rings
-from sim.recording import Json, json_text
+from sim.recording import Json, Recorder, json_text
 from sim.replay import Packing
 from sim.scenarios.scenario import Event, Put, Scenario
 from sim.things.thing import Thing
@@ -72,11 +76,19 @@ class Session:
             t.name: _kind(compiled, t.name) for t in compiled.goals.percepts(driving=True) if not t.arguments
         }
         self.run_number = 0
+        self.recorded: list[Path] = []
+        self.unwritten = ""
+        self._record: Path | None = None
+        self._recorder: Recorder | None = None
         self._begin()
 
     def _begin(self) -> None:
+        episode = Episode(self._scenario, self.seed, self.compiled.goals.period)
+        recorder = self._new_recorder(episode)
+        self._end_recording()
         self.run_number += 1
-        self.episode = Episode(self._scenario, self.seed, self.compiled.goals.period)
+        self.episode, self._recorder = episode, recorder
+        self._moved: dict[str, list[float]] = {}
         self.packing = Packing()
         self.rows: deque[str] = deque(maxlen=KEPT)
         self.said = ""
@@ -122,9 +134,12 @@ class Session:
     def observe(self, episode: Episode) -> None:
         """Pack the tick; called by the episode."""
         note = json.loads(episode.note)
-        tick = {"t": episode.time, "world": episode.snapshot(), "plan": note}
+        world = episode.snapshot()
+        tick = {"t": episode.time, "world": world, "plan": note}
         self.packing.tick(tick, self._loser.tick(note))
         self.packing.reading(self.ticks - 1, episode.world.sense())
+        if self._recorder is not None:
+            self._recorder.tick(episode.time, world, episode.note, episode.world.sense(), self._by_hand())
         self.rows.append(json_text(self.packing.last()))
         firing = self._loser.firing(note["inputs"], note["registers"])
         hit = [rule for rule in firing if rule in self.wishes.breaks and rule not in self._firing]
@@ -136,8 +151,49 @@ class Session:
         self.wishes.running, self.said = False, said
 
     def close(self) -> None:
-        """Stop what runs."""
+        """Stop what runs, and end the recording; the second call does nothing."""
         self._brain.close()
+        self._end_recording()
+
+    # --- recordings -------------------------------------------------------------------------------
+
+    def record(self, path: Path) -> None:
+        """Begin anew, and record this run and those that are begun anew after it.
+
+        The first replaces what is at `path`, the others take names that are free: `run.mcap`, `run-2.mcap` and so on.
+        Raises OSError where the file cannot be written.
+        """
+        self._record = path
+        self._begin()
+
+    def _new_recorder(self, episode: Episode) -> Recorder | None:
+        if self._record is None:
+            return None
+        path, number = self._record, 2
+        while self.recorded and (path in self.recorded or path.exists()):
+            path, number = self._record.with_stem(f"{self._record.stem}-{number}"), number + 1
+        recorder = Recorder(path, self._header(episode))
+        self.recorded.append(path)
+        return recorder
+
+    def _by_hand(self) -> Json:
+        """What was forced in this tick, and what was moved since the one before."""
+        forced = {f"({name})": value for name, value in self.wishes.forced.items()}
+        moved, self._moved = self._moved, {}
+        return ({"forced": forced} if forced else {}) | ({"moved": moved} if moved else {})
+
+    def _end_recording(self) -> None:
+        """The last tick of the run that stands: the robot stops. What cannot be written any more is said."""
+        recorder, self._recorder = self._recorder, None
+        if recorder is None:
+            return
+        episode = self.episode
+        episode.act(STOP)
+        try:
+            with recorder:
+                recorder.tick(episode.time, episode.snapshot(), "null", episode.world.sense())
+        except OSError as error:
+            self.unwritten = f"{self.recorded[-1]}: {error.strerror or error}"
 
     # --- wishes -----------------------------------------------------------------------------------
 
@@ -163,9 +219,15 @@ class Session:
                 self.break_at(rule, on)
             case {"do": "restart"}:
                 self.wishes.running = False
-                self._begin()
+                self._restart()
             case _:
                 raise WishError("that is no wish that a session knows")
+
+    def _restart(self) -> None:
+        try:
+            self._begin()
+        except OSError as error:
+            raise WishError(f"it cannot be recorded: {error.strerror or error}") from None
 
     def move(self, name: str, pose: Pose) -> None:
         """Put a thing elsewhere, from the next tick on."""
@@ -175,6 +237,7 @@ class Session:
         if not movable(thing):
             raise WishError(f"{name!r} cannot be moved by hand")
         put(self.episode.world, thing, pose)
+        self._moved[name] = [pose.x, pose.y, pose.theta]
 
     def force(self, name: str, value: object) -> None:
         """Give a percept a value from the next tick on; None takes it back."""
@@ -212,14 +275,17 @@ class Session:
 
     def header(self) -> Json:
         """The header of a recording of this run."""
+        return self._header(self.episode)
+
+    def _header(self, episode: Episode) -> Json:
         scenario = self._world.scenario
         return {
             "plan": plan_header(self.compiled),
             "scenario": {"name": scenario.name, "text": self._world.text},
             "seed": self.seed,
-            "versions": {"rplan": version("rplan")},
+            "versions": {name: version(name) for name in ("rplan", "numpy", "pymunk")},
             "period": self.compiled.goals.period,
-            "world": self.episode.header(),
+            "world": episode.header(),
         }
 
     def state(self) -> Json:

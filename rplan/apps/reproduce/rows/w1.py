@@ -142,7 +142,8 @@ ROW = Row(
     note=(
         "Neither the error of the compass nor where things stood is printed. The field that turns the compass (2.1° "
         "rms, 4.2° at most, 38 m from wave to wave) was chosen of the size that such compasses have near buildings; it "
-        "decides the error at the end."
+        "decides the error at the end. The contacts that the picture marks are kerbs; tracks climb those, and they do "
+        "not count."
     ),
     cases=cases,
     measure=measure,

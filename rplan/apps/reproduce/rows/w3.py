@@ -10,7 +10,9 @@ from rplan.apps.reproduce.row import Case, Finding, Judgement, Measures, Moment,
 from rplan.apps.reproduce.rows.w1 import PLAN, WORLDS
 from rplan.apps.sweep.work import Change
 
-WITH, WITHOUT = "with the recent path", "without it"
+WITH, WITHOUT, DEEP = "with the recent path", "without it", "deep, with the recent path"
+DEEPER = (("things[2].at", "[{between: [6.2, 9.2]}, -2]"),)
+"""The back wall 6 to 9 m behind the mouth."""
 ALLEYS = 24
 FEWEST, ENOUGH = 1, 20
 FORGOTTEN = (Change("recent-path", "ignored", 1000.0),)
@@ -20,16 +22,20 @@ PAST = -6.2  # [m], y: along the wall that goes on to the right, 3 m past the wi
 BACK = -6.0  # [m], x: where the robot started
 LEAST, MOST, RARELY = 0.2, 0.5, 0.05
 ALL_OUT = "at the mouth the robot seldom takes the wall that it came along for the one to follow"
-STILL = "the mouth is wider than what the path blocks, or the path was forgotten before the robot was past it"
+STILL = (
+    "the path blocks 0.4 m to either side and the mouth is wider: once the way in is forgotten, which takes 20 s, the "
+    "robot passes beside the way out"
+)
 HELD = "at the mouth the robot turns into the alley again and again"
 
 
 def cases(seeds: int) -> tuple[Case, ...]:
-    """Twenty-four alleys, fewer where fewer than twenty seeds are asked for."""
+    """Twenty-four alleys of each kind, fewer where fewer than twenty seeds are asked for."""
     every = tuple(range(ALLEYS if seeds >= ENOUGH else seeds))
     return (
         Case(WITH, PLAN, WORLDS + "alley", every),
         Case(WITHOUT, PLAN, WORLDS + "alley", every, (), FORGOTTEN),
+        Case(DEEP, PLAN, WORLDS + "alley", every, DEEPER),
     )
 
 
@@ -67,8 +73,8 @@ def measure(seen: Seen) -> Measures:
 
 
 def judge(preset: Preset, measures: Sequence[Measures]) -> tuple[Finding, ...]:
-    """Some are traps without the memory, none with it."""
-    return tuple(_case(preset, name, some) for name in (WITHOUT, WITH) if (some := of_case(measures, name)))
+    """Some are traps without the memory, none with it, however deep."""
+    return tuple(_case(preset, name, some) for name in (WITHOUT, WITH, DEEP) if (some := of_case(measures, name)))
 
 
 def _case(preset: Preset, name: str, some: Sequence[Measures]) -> Finding:
@@ -98,18 +104,19 @@ ROW = Row(
     paper="wayfarer",
     title="Blind alleys",
     set_up=(
-        "The followed wall goes on into a blind alley: twenty-four of them, the mouth 2.4 to 3.2 m wide, 3.5 to 9 m "
-        "deep; two minutes each; trapped: neither 3 m past the mouth nor 6 m back before it."
+        "The followed wall goes on into a blind alley: twenty-four of them, the mouth 2.4 to 3.2 m wide, 3 to 6 m "
+        "deep, and twenty-four of 6 to 9 m; two minutes each; trapped: neither 3 m past the mouth nor 6 m back."
     ),
     printed=(
         "“Prior to the addition of this behavior, the robot would get trapped in cul-de-sacs in roughly one-third of "
         "its perimeter reconnaissance attempts. After the addition … the robot has successfully escaped 100% of "
-        "cul-de-sacs encountered.”"
+        "cul-de-sacs encountered.” It is “only a function of the size of the cul-de-sac's mouth and not its length”."
     ),
     note=(
-        "The paper's cul-de-sacs are not described. The sizes of these were chosen, in a sketch of the system, so that "
-        "about a third of them are traps; agreement without the memory tells little, the difference that the memory "
-        "makes tells more."
+        "The paper's cul-de-sacs are not described. The depth of these was chosen so that about a third of them are "
+        "traps (without the memory those deeper than 4.3 m are); agreement there tells little, the difference that the "
+        "memory makes tells more. At the mouth the robot turns left round the corner, the wall that it came along is "
+        "the strongest line again, and it follows that wall in, as the paper says."
     ),
     cases=cases,
     measure=measure,

@@ -25,10 +25,10 @@ PLAN, WORLD = "steer_clear", "perimeter/worlds/low_post"
 ESCAPE = "(escape-from-stasis)"
 LEFT, RIGHT, NOSE = "things[0].at", "things[1].at", "things[2].at"
 POSITIONS = (
-    ("beside the middle of the left tread", ()),
-    ("beside the rear of the left tread", ((LEFT, "[-0.25, 0.313]"),)),
-    ("at the left of the nose", ((LEFT, "[-0.25, 0.313]"), (NOSE, "[0.398, 0.1]"))),
-    ("farther along both treads", ((LEFT, "[-0.1, 0.313]"), (RIGHT, "[0.3, -0.313]"), (NOSE, "[0.398, -0.1]"))),
+    ("behind the middle of the left tread", ()),
+    ("farther behind it", ((LEFT, "[-0.2, 0.313]"),)),
+    ("at the middle, left of the nose", ((LEFT, "[-0.1, 0.313]"), (NOSE, "[0.398, 0.1]"))),
+    ("at the middle, right of the nose", ((LEFT, "[-0.1, 0.313]"), (NOSE, "[0.398, -0.1]"))),
 )
 SOON, MEDIAN, MOST = 60.0, 8.0, 17.0  # [s]
 AGAIN = (
@@ -38,11 +38,18 @@ AGAIN = (
 
 
 def cases(seeds: int) -> tuple[Case, ...]:
-    """Every position with every seed, which is the seed of the escapes as well."""
+    """Every position with every seed, each with other escapes."""
+    drawn = {(k, seed): 1 + seed * len(POSITIONS) + k for k in range(len(POSITIONS)) for seed in range(seeds)}
     return tuple(
-        Case(name, PLAN, WORLD, (seed,), settings, (Change("stasis", "seed", float(seed + 1)),))
-        for name, settings in POSITIONS
-        for seed in range(seeds)
+        Case(
+            f"{POSITIONS[k][0]}, escapes {chance}",
+            PLAN,
+            WORLD,
+            (seed,),
+            POSITIONS[k][1],
+            (Change("stasis", "seed", float(chance)),),
+        )
+        for (k, seed), chance in drawn.items()
     )
 
 
@@ -103,7 +110,7 @@ ROW = Row(
     note=(
         "A single post does not hold the hull in this world, which slides round it; treads would catch on it. So there "
         "are three. The flippers come out first, and in vain: the three seconds that they are given do not count. "
-        "Arrangements in which the robot has to back farther than it takes to clear a tread take longer."
+        "In these, some 0.15 m free the hull; beside the rear of a tread it takes more, and up to half a minute."
     ),
     cases=cases,
     measure=measure,
