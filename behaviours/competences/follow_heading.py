@@ -7,16 +7,29 @@ STOP once the wall is lost. Leaves alone: both.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Protocol
 
-from behaviours.estimators.sectors import KEEP_OFF
-from behaviours.estimators.wall_of_lines import WallOfLines
+from behaviours.cores.steering import KEEP_OFF
 from behaviours.interface import STOP, Channels, Command, Competence, Reading, Report
+
+
+class LinedWall(Protocol):
+    """The wall; mode: what is known of it; offset [m], angle [rad]."""
+
+    @property
+    def mode(self) -> str: ...
+
+    @property
+    def offset(self) -> float: ...
+
+    @property
+    def angle(self) -> float: ...
 
 
 class FollowHeading:
     """Follow the wall."""
 
-    def __init__(self, wall: WallOfLines, heading: Callable[[], float], steer: Competence) -> None:
+    def __init__(self, wall: LinedWall, heading: Callable[[], float], steer: Competence) -> None:
         self._wall, self._heading, self._steer = wall, heading, steer
 
     def start(self, reading: Reading, channels: Channels) -> None:

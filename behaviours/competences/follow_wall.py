@@ -11,14 +11,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import numpy as np
 
+from behaviours.cores.corner import STEEPEST
 from behaviours.cores.hull_paths import Hull, Motors, least_distance, paths
-from behaviours.cores.wall_law import turn_rate
-from behaviours.estimators.fitted_wall import FittedWall
-from behaviours.estimators.wall_and_corners import STEEPEST, WallAndCorners
-from behaviours.interface import STOP, Channels, Command, Drive, Reading, Report
+from behaviours.cores.wall_law import LawSettings, turn_rate
+from behaviours.interface import STOP, Channels, Command, Drive, Floats, Reading, Report
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,10 +50,60 @@ SLACK = 0.003
 """[m]: where the hull is nearer to something than the margin, it comes nearer by no more than this."""
 
 
+class SideAndLaw(Protocol):
+    """left: the wall is to the left."""
+
+    @property
+    def left(self) -> bool: ...
+
+    @property
+    def law(self) -> LawSettings: ...
+
+
+class SeenWall(Protocol):
+    """The wall, as one to the right."""
+
+    @property
+    def settings(self) -> SideAndLaw: ...
+
+    @property
+    def mode(self) -> str:
+        """What is known of it."""
+        ...
+
+    def target(self) -> tuple[float, float, float] | None:
+        """Offset [m], angle [rad] and curvature to steer by; None where there is no wall."""
+        ...
+
+
+class SeenCorners(SeenWall, Protocol):
+    """The wall with its ends and corners."""
+
+    @property
+    def stand_off(self) -> float:
+        """[m], less where it is narrow."""
+        ...
+
+    @property
+    def turn(self) -> float:
+        """[rad] away from what bars the way."""
+        ...
+
+    @property
+    def direction(self) -> float:
+        """[rad, robot frame] past it."""
+        ...
+
+    @property
+    def around(self) -> Floats:
+        """What is near (n, 2) [m]."""
+        ...
+
+
 class FollowWall:
     """Follow the wall."""
 
-    def __init__(self, wall: FittedWall, pace: PaceSettings) -> None:
+    def __init__(self, wall: SeenWall, pace: PaceSettings) -> None:
         self._wall, self._pace = wall, pace
 
     def start(self, reading: Reading, channels: Channels) -> None:
@@ -77,7 +127,7 @@ class FollowWall:
 class FollowWallClear:
     """Follow the wall, its ends and its corners, and touch nothing."""
 
-    def __init__(self, wall: WallAndCorners, pace: PaceSettings, clear: ClearSettings) -> None:
+    def __init__(self, wall: SeenCorners, pace: PaceSettings, clear: ClearSettings) -> None:
         self._wall, self._pace, self._clear = wall, pace, clear
         self._hull = Hull(radius=clear.hull_radius)
 

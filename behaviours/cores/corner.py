@@ -21,6 +21,8 @@ from behaviours.cores.wall_fit import Fit, FitSettings, Line, acquire
 from behaviours.interface import Floats, Vec2
 
 HALF_A_TURN = math.pi
+STEEPEST = 0.8
+"""Sine of the steepest angle at which a wall that is far is approached."""
 SHRINK = 0.85
 BACK = math.radians(60)
 """Before a disc turns the robot by more, smaller ones are tried."""

@@ -17,20 +17,18 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from behaviours.cores import corner
-from behaviours.cores.corner import CornerSettings
+from behaviours.cores.corner import STEEPEST, CornerSettings
+from behaviours.cores.geometry import moved
 from behaviours.cores.wall_fit import Fit, acquire, track
 from behaviours.cores.wall_loss import End
 from behaviours.cores.wall_state import as_line, updated
 from behaviours.estimators.fitted_wall import FittedWall, FittedWallSettings
-from behaviours.estimators.surroundings import moved
 from behaviours.interface import Channels, Floats, Pose, Reading, Report, Scan, Vec2, wrap
 
 TOLD = 0.1
 """A scan of which a smaller share says anything is none."""
 INSIDE = 0.05
 """[m] What lies so far within the hull is a mistake of the sensor."""
-STEEPEST = 0.8
-"""Sine of the steepest angle at which a wall that is far is approached."""
 MOST = math.radians(120)
 BESIDE = (math.radians(-170), math.radians(60))
 """Between these bearings lies what a lost wall may be found on again."""

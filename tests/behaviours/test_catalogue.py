@@ -34,6 +34,8 @@ def test_the_libraries_are_there():
         "stasis",
         "stereo-search",
         "svfh",
+        "wall-by-hough",
+        "wall-by-ransac",
     ]
     with pytest.raises(TypeError):
         LIBRARIES["mine"] = library("robot")
