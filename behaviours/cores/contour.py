@@ -26,7 +26,8 @@ class ContourSettings:
 
     look_ahead: how far the disc is swept; regain, steepest: how the stand-off is regained; snap: points so near to a
     line lie on it; leap: the place of contact may move by so much from scan to scan; shrink: a disc that fits nowhere
-    is made smaller by this share until one fits, at the smallest `least`.
+    is made smaller by this share until one fits, at the smallest `least`. back [rad]: before a disc turns the robot
+    away by more, smaller ones are tried; a whole turn: never.
     """
 
     look_ahead: float = 2.5
@@ -36,6 +37,7 @@ class ContourSettings:
     leap: float = 1.0
     shrink: float = 0.15
     least: float = 0.3
+    back: float = math.tau
 
 
 NO_LENGTH = 1e-6
@@ -103,15 +105,18 @@ def _roll(
     nearest = int(reach.argmin())
     gap = float(reach[nearest])
     radius = max(stand_off, min(gap, math.hypot(*contact)) - s.look_ahead * math.sin(s.steepest))
+    back: tuple[float, int | None] | None = None
     while True:
         away = max(0.0, radius - gap) / max(gap, NO_LENGTH) * points[nearest]
         x, y = (points + away).T
         start = math.atan2(contact[1] + away[1], contact[0] + away[0])
         swept, touched = _swept(np.hypot(x, y), np.arctan2(y, x), start, radius, s.look_ahead)
-        if swept < math.tau:
+        if swept < math.tau and -wrap(start - swept) <= s.back:
             return start - swept, touched
+        if swept < math.tau and back is None:
+            back = start - swept, touched
         if radius <= s.least:
-            return start - math.pi / 2, None
+            return back or (start - math.pi / 2, None)
         radius = max(s.least, radius * (1.0 - s.shrink))
 
 

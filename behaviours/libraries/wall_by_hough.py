@@ -5,6 +5,7 @@ Takes: the values of a plan. Gives: the library `wall-by-hough`. Leaves alone: h
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -41,6 +42,9 @@ class _Pace:
     slip: float = 1.0
 
 
+BACK = math.radians(60)
+"""Before the disc turns the robot away by more, smaller ones are tried: corridors are narrow."""
+
 _PRESET = Parameter(
     "preset",
     "symbol",
@@ -74,7 +78,7 @@ NOTHING: Floats = np.zeros((0, 2))
 
 def _walls(values: Values, pace: _Pace, modern: bool) -> WallsSettings:
     follow = FollowSettings(stand_off=positive("stand-off", pace.stand_off))
-    contour = ContourSettings(look_ahead=positive("look-ahead", pace.look_ahead))
+    contour = ContourSettings(look_ahead=positive("look-ahead", pace.look_ahead), back=BACK)
     contour = replace(contour, least=min(contour.least, follow.stand_off))
     right = chosen(_SIDE, values, "left", "right") == "right"
     return WallsSettings(follow, right=right, contour=contour if modern else None)

@@ -40,16 +40,13 @@ def test_a_library_offers_the_compiler_what_it_brings_to_life() -> None:
 
 
 def test_every_function_of_every_library_is_brought_to_life_by_its_crew() -> None:
-    plan = compile_source(
-        Source("all.rplan", "".join(f"(use {name})" for name in LIBRARIES) + "(goalem (do anything))")
-    )
-    made = crew(plan)
     for library in LIBRARIES.values():
+        made = crew(compile_source(Source("one.rplan", f"(use {library.name}) (goalem (do anything))")))
         for function in library.functions:
             sensed = {**made.percepts, **made.values}  # a value may be of any type
             home = {"command": made.competences, "pose": made.values}.get(function.type, sensed)
             assert function.name in home
-    assert made.safe == STOP
+        assert made.safe == STOP
 
 
 def test_a_parameter_that_a_library_refuses_makes_the_plan_wrong() -> None:
