@@ -1,10 +1,10 @@
 """Pages followed as a reader would: files written, commands typed, one after the other in one place.
 
-Takes: Markdown. Gives: the same text with what the commands print now. Leaves alone: what a page should say, and text that is
-no block.
+Takes: Markdown. Gives: the same text with what the commands print now. Leaves alone: what a page should say, and text
+that is no block.
 
-A block with `title="FILE"` is the whole of that file; with `title="FILE, as it stands"` it shows what is there. A block of
-text without a title is a session of lines `$ COMMAND` and what they print. Every block is one or the other.
+A block with `title="FILE"` is the whole of that file; with `title="FILE, as it stands"` it shows what is there. A
+block of text without a title is a session of lines `$ COMMAND` and what they print. Every block is one or the other.
 """
 
 from __future__ import annotations

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,7 @@ from repo.following import PageError, Reader
 from rplan.apps.commands.new import project
 
 BLESS = os.environ.get("RPLAN_BLESS") == "1"
-OWN = {"README.md", "run.mcap", "run.html", "__pycache__"}
+OWN = {"README.md", "run.mcap", "run.html", "plan.html", "__pycache__"}
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +41,7 @@ def test_every_step_does_what_it_says_where_the_last_one_ended(
 
 def test_there_are_six_steps_and_each_leads_to_the_next(steps: list[Path]) -> None:
     assert len(steps) == 6
-    for page, following in zip(steps, steps[1:], strict=False):
+    for page, following in pairwise(steps):
         last = page.read_text(encoding="utf-8").rstrip().rpartition("\n\n")[2]
         assert f"]({following.name})" in last, page.name
 
