@@ -12,6 +12,8 @@ from pygments.lexer import RegexLexer, bygroups, words
 from pygments.lexers import LEXERS
 from pygments.token import Comment, Keyword, Name, Number, Operator, Punctuation, String, Whitespace
 
+__all__ = ["PlanLexer"]
+
 FORMS = [
     "plan",
     "include",
