@@ -69,6 +69,7 @@ def on_page_markdown(markdown: str, page: Any, **_: object) -> str:
 
 def _coloured(markdown: str) -> str:
     markdown = re.sub(r"^```lisp(?: wrong)?(?=$| title)", "```rplan", markdown, flags=re.MULTILINE)
+    markdown = re.sub(r"^( *)```python part$", r"\1```python", markdown, flags=re.MULTILINE)
     return re.sub(r"^```(?:text|sh)\n(?=\$ )", "```console\n", markdown, flags=re.MULTILINE)
 
 
