@@ -171,10 +171,13 @@ class Judge:
 
     def _clearance_now(self, below: float) -> float:
         """Clearance [m] of all but climbed curbs, or `below` where it is certainly more."""
-        clearance = self._world.clearance(below=below)
-        if clearance >= below or not self._climbed:
-            return clearance
-        return min([below, *(_gap(self._world, t) for t in self._world.things if t.present and t not in self._climbed)])
+        world = self._world
+        if not self._climbed:
+            return world.clearance(below=below)
+        others = [t for t in world.things if t.present and t not in self._climbed and _least_gap(world, t) < below]
+        if not others or world.clearance(below=below) >= below:
+            return below
+        return min([below, *(_gap(world, thing) for thing in others)])
 
     def _watch_goal(self, world: World) -> None:
         goal = world.scenario.goal
@@ -275,6 +278,12 @@ def is_climbed(thing: Thing, world: World) -> bool:
     """Whether it is a curb that the robot's drive can climb, with flippers if need be."""
     drive = world.robot.build.drive
     return thing.placed.kind == "curb" and isinstance(drive, SkidSteer) and thing.placed.height <= drive.climbs_deployed
+
+
+def _least_gap(world: World, thing: Thing) -> float:
+    """Distance [m] between the circles round the hulls: `_gap` is no less."""
+    pose = world.robot.pose
+    return math.hypot(thing.x - pose.x, thing.y - pose.y) - world.robot.build.radius - thing.reach
 
 
 def _gap(world: World, thing: Thing) -> float:

@@ -165,9 +165,9 @@ def _fitted(moments: Floats, n: Floats, rho: Floats, band: float) -> tuple[Float
     near = (np.abs(off, out=off) <= band).astype(np.float64)
     sums = moments @ near.T
     count = sums[0]
-    some = np.maximum(count, 1.0)
-    mx, my, sxy = sums[1] / some, sums[2] / some, sums[4] / some
-    along = 0.5 * np.arctan2(2.0 * (sxy - mx * my), (sums[3] - sums[5]) / some - mx * mx + my * my)
+    sums[3] -= sums[5]
+    mx, my, spread, sxy = sums[1:5] / np.maximum(count, 1.0)
+    along = 0.5 * np.arctan2(2.0 * (sxy - mx * my), spread - mx * mx + my * my)
     fitted = np.empty((2, len(rho)))
     np.negative(np.sin(along), out=fitted[0])
     np.cos(along, out=fitted[1])

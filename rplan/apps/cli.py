@@ -23,6 +23,7 @@ COMMANDS = {
     "list": "List plans, libraries and what they offer.",
     "map": "Make a map file or a picture of the map in a recording.",
     "mutate": "Say whether the tests of a plan notice a slip in it.",
+    "new": "Make a fresh project with a plan of its own.",
     "prove": "Prove what a plan promises, or show how it breaks it.",
     "repair": "Make a whole file of a recording that was cut short.",
     "replay": "Make a page that plays a recording.",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ from behaviours.interface import Compass, Odometry, Pose, Reading, Workshop
 from behaviours.libraries.recent_path import recent_path
 from rplan.apps.reproduce.watch import watch
 from rplan.apps.wiring import compile_file
-from sim.scenarios.format import loads
+from sim.scenarios.format import load, loads
 
 PLANS = Path(__file__).parents[2] / "plans"
 LONG_ALLEY = """
@@ -157,3 +158,11 @@ def test_in_a_long_and_narrow_alley_the_robot_waits_until_its_path_is_forgotten(
     waits = [moment.time for moment in seen.moments if deepest - moment.pose.x < 0.15]
     assert seen.moments[-1].pose.x < deepest - 2.0, "it came out again"
     assert waits[-1] - waits[0] == pytest.approx(20.0, abs=5.0)
+
+
+def test_out_of_an_alley_the_robot_does_not_go_in_again_beside_its_path():
+    plan = compile_file(PLANS / "perimeter" / "perimeter.rplan")
+    seen = watch(plan, load(PLANS / "perimeter" / "worlds" / "alley.yaml"), 106)
+    inside = [moment.pose.x > 0.3 for moment in seen.moments if moment.time < 75.0]
+    assert sum(now and not last for last, now in pairwise(inside)) == 1
+    assert min(moment.pose.y for moment in seen.moments if moment.time < 75.0) < -6.0, "on along the wall"

@@ -61,6 +61,7 @@ def test_the_wheel_has_the_packages_the_plans_and_the_replay_page(root: Path, tm
     wanted = [f"{path.relative_to(root)}" for name in ("rplan", "behaviours", "sim") for path in sources(root / name)]
     wanted += [f"rplan/_plans/{path.relative_to(root / 'plans')}" for path in (root / "plans").rglob("*.rplan")]
     wanted += ["rplan/_plans/find_and_fetch/parking_lot.yaml", "sim/replay.html", "rplan/lang/plan.lark"]
+    wanted += [f"{path.relative_to(root)}" for path in (root / "rplan" / "apps" / "templates").rglob("*.txt")]
     wanted += ["rplan/py.typed", "behaviours/py.typed", "sim/py.typed"]
     assert len(wanted) > 80
     assert [name for name in wanted if name not in names] == []
