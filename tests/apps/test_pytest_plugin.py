@@ -165,6 +165,13 @@ def test_one_dead_branch_fails_exactly_the_item_of_its_rule_and_says_why(pyteste
     assert sum(line.endswith("can never be taken") for line in result.stdout.lines) == 1
 
 
+def test_a_file_of_rules_for_other_plans_has_no_items_of_its_own(pytester: pytest.Pytester, run) -> None:
+    write(pytester, "(use robot) (defoutput action command) (defgoalr (maint rest) (do action (stop)))")
+    assert run("--rplan", "--collect-only").ret == pytest.ExitCode.NO_TESTS_COLLECTED
+    write(pytester, "(plan p) (use robot) (defoutput action command) (defgoalr (maint rest) (do action (stop)))")
+    run("--rplan", "--collect-only").stdout.fnmatch_lines(["*error?no-goal?*"])
+
+
 def test_a_rule_that_nothing_asks_for_fails(pytester: pytest.Pytester, run) -> None:
     write(pytester, HEAD + "(defgoalr (ach nap) (do action (rest)))")
     result = run("--rplan")
