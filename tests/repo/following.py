@@ -51,6 +51,8 @@ ELSEWHERE = (
     "pip install",
     "rplan view",
     "reproduce find-and-fetch",
+    "reproduce wayfarer",
+    "reproduce wall-following",
     "reproduce B4 --preset both",
     *FILM,
 )
