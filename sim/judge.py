@@ -17,7 +17,6 @@ from typing import Literal
 
 from behaviours.interface import Pose, Vec2, wrap
 from sim.raycast import Circle, Outline, Polygon, Rings
-from sim.robots.build import SkidSteer
 from sim.scenarios.layout import distance
 from sim.scenarios.scenario import Round
 from sim.things.thing import Thing
@@ -109,7 +108,7 @@ class Judge:
         self._home: float | None = None
         self._distance = 0.0
         self._winding = None if world.scenario.round is None else Winding(world.scenario.round, world.robot.pose)
-        self._climbed = tuple(thing for thing in world.things if is_climbed(thing, world))
+        self._climbed = tuple(thing for thing in world.things if world.can_climb(thing))
         self._clearance = self._clearance_now(FAR)
         self._contacts: list[Touch] = []
         self._last_touch: dict[str, float] = {}
@@ -272,12 +271,6 @@ class Winding:
 
     def _bearing_of(self, pose: Pose) -> float:
         return math.atan2(pose.y - self._task.about[1], pose.x - self._task.about[0])
-
-
-def is_climbed(thing: Thing, world: World) -> bool:
-    """Whether it is a curb that the robot's drive can climb, with flippers if need be."""
-    drive = world.robot.build.drive
-    return thing.placed.kind == "curb" and isinstance(drive, SkidSteer) and thing.placed.height <= drive.climbs_deployed
 
 
 def _least_gap(world: World, thing: Thing) -> float:

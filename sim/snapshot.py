@@ -52,11 +52,18 @@ def snapshot(world: World, stage: str, command: Command) -> Json:
         "robot": _pose(world.robot.pose),
         "odometry": _pose(reading.odometry.pose),
         "movers": _movers(world),
-        "contacts": [{"thing": touch.thing, "driven_into": touch.driven_into} for touch in world.touches],
+        "contacts": _contacts(world),
         "head": [_angle(head.pan), _angle(head.tilt)],
         "command": _command(command),
         "on_board": reading.object_on_board,
     } | _sensed(reading)
+
+
+def _contacts(world: World) -> list[Json]:
+    """What touches the robot, but for curbs that it can climb."""
+    touches = world.touches
+    ground = {thing.placed.id for thing in world.things if world.can_climb(thing)} if touches else set()
+    return [{"thing": one.thing, "driven_into": one.driven_into} for one in touches if one.thing not in ground]
 
 
 def _in_snapshots(world: World, thing: Thing) -> bool:

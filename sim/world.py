@@ -25,6 +25,7 @@ from sim.frames import bearing
 from sim.noise import chance, named_chance
 from sim.raycast import Circle, Polygon, Scene
 from sim.robots.battery import Cells
+from sim.robots.build import SkidSteer
 from sim.robots.head import BAD, LIGHT, PanTilt
 from sim.robots.robot import Robot
 from sim.scenarios.layout import lay_out
@@ -283,6 +284,12 @@ class World:
     def begun(self) -> tuple[Touch, ...]:
         """Contacts that began in the last tick."""
         return self._contacts.begun
+
+    def can_climb(self, thing: Thing) -> bool:
+        """Whether it is a curb that the robot's drive climbs, with flippers if need be: ground, and no obstacle."""
+        drive = self.robot.build.drive
+        is_low = isinstance(drive, SkidSteer) and thing.placed.height <= drive.climbs_deployed
+        return thing.placed.kind == "curb" and is_low
 
     @property
     def donor_gaps(self) -> list[float]:
