@@ -97,7 +97,7 @@ def _ravon() -> Model:
 def _xrhex() -> Model:
     """X-RHex with a Hokuyo UBG-04LX-F01 on its back, taken for a unicycle.
 
-    Lidar after Bayer 2011 and the sensor's data sheet: 240 degrees, a scan each 28 ms, less than 4 m, 1 % of the range;
+    Lidar after Bayer 2012 and the sensor's data sheet: 240 degrees, a scan each 28 ms, less than 4 m, 1 % of the range;
     667 beams. Speed: 0.32 m/s for each unit of its setspeed, 1.5 of them.
     """
     drive = Differential(max_speed=0.8, max_turn_rate=1.5, acceleration=2.0, turn_acceleration=8.0, track=0.3)
