@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import pytest
@@ -271,34 +270,3 @@ def test_a_plan_that_is_not_there_or_wrong_is_one_clear_failure(pytester: pytest
     result = run()
     result.assert_outcomes(failed=2, passed=1)
     result.stdout.fnmatch_lines(["there is no file or folder none.rplan*", "error?no-rule?: *"])
-
-
-PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "test_a_plan.md"
-
-
-def test_the_plan_ticks_and_tests_of_the_page_do_what_the_page_says(pytester: pytest.Pytester, run) -> None:
-    blocks = re.findall(r"^```(\w+)\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
-    plan = next(text for kind, text in blocks if kind == "lisp")
-    (pytester.path / "doorway.rplan").write_text(plan, encoding="utf-8")
-    tests = "".join(text for kind, text in blocks if kind == "python" and "yesterday" not in text)
-    tests += (
-        PAGE.read_text(encoding="utf-8")
-        .partition("def test_it_makes_room")[2]
-        .partition("\n\n\n")[0]
-        .join(["\ndef test_it_makes_room", "\n"])
-    )
-    tests += "\ndef test_slip(plan):\n"
-    tests += "    plan('doorway.rplan').given('anything-is-too-close').expect(action='(move-away-from-danger)')\n"
-    pytester.makepyfile(tests)
-    (pytester.path / "doorway.ticks").write_text(
-        next(text for kind, text in blocks if text.startswith("; doorway.rplan")), encoding="utf-8"
-    )
-    result = run("--rplan", "--rplan-bless", "-v")
-    result.assert_outcomes(passed=7, failed=1)
-    shown = next(text for kind, text in blocks if text.startswith("E   AssertionError")).splitlines()
-    result.stdout.fnmatch_lines([f"E *{line[1:].strip()}" for line in shown])
-    for line in next(text for kind, text in blocks if "/branches PASSED" in text).splitlines():
-        result.stdout.fnmatch_lines([f"{line}*"])
-    (pytester.path / "doorway.rplan").write_text(plan.replace("0.2s", "0.3s"), encoding="utf-8")
-    differing = next(text for kind, text in blocks if "ticks differ" in text).splitlines()
-    run("--rplan", "doorway.ticks").stdout.fnmatch_lines(differing)
