@@ -27,7 +27,8 @@ class ContourSettings:
     look_ahead: how far the disc is swept; regain, steepest: how the stand-off is regained; snap: points so near to a
     line lie on it; leap: the place of contact may move by so much from scan to scan; shrink: a disc that fits nowhere
     is made smaller by this share until one fits, at the smallest `least`. back [rad]: before a disc turns the robot
-    away by more, smaller ones are tried; a whole turn: never.
+    away from the contour by more, smaller ones are tried, since what the disc would roll on along may stand alone, and
+    it would not come back from there; two whole turns: never.
     """
 
     look_ahead: float = 2.5
@@ -37,7 +38,7 @@ class ContourSettings:
     leap: float = 1.0
     shrink: float = 0.15
     least: float = 0.3
-    back: float = math.tau
+    back: float = 2.0 * math.tau
 
 
 NO_LENGTH = 1e-6
@@ -111,13 +112,18 @@ def _roll(
         x, y = (points + away).T
         start = math.atan2(contact[1] + away[1], contact[0] + away[0])
         swept, touched = _swept(np.hypot(x, y), np.arctan2(y, x), start, radius, s.look_ahead)
-        if swept < math.tau and -wrap(start - swept) <= s.back:
+        if swept < math.tau and swept - _to_the_left(start) <= s.back:
             return start - swept, touched
         if swept < math.tau and back is None:
             back = start - swept, touched
         if radius <= s.least:
             return back or (start - math.pi / 2, None)
         radius = max(s.least, radius * (1.0 - s.shrink))
+
+
+def _to_the_left(bearing: float) -> float:
+    """The bearing [rad] of a place of contact, as far to the left as the contour lies: up to `BESIDE`."""
+    return BESIDE - (BESIDE - bearing) % math.tau
 
 
 def _swept(reach: Floats, bearing: Floats, start: float, radius: float, step: float) -> tuple[float, int | None]:

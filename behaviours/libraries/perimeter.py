@@ -5,6 +5,7 @@ Takes: what a plan sets. Gives: the library. Leaves alone: which one steers (`sv
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from behaviours.cores.contour import ContourSettings
@@ -47,6 +48,8 @@ _CONTOUR = parameters(
 _REFINE = Parameter(
     "refine", "symbol", "", "on", "`on`: lines are fitted to their points; `off`: they are middles of bins."
 )
+BACK = math.radians(90.0)
+"""Before the disc turns the robot back, and not only aside, smaller ones are tried (chosen here)."""
 _ROUND = parameters(
     RoundSettings(),
     ("round_within", "m", "The robot has come round so near to where it began (chosen here)."),
@@ -57,7 +60,7 @@ _ROUND = parameters(
 def _contour(values: Values, follow: FollowSettings) -> ContourSettings:
     contour = settings_of(ContourSettings(), _CONTOUR, values)
     positive("look-ahead", contour.look_ahead)
-    return replace(contour, steepest=follow.steepest, least=min(contour.least, follow.stand_off))
+    return replace(contour, steepest=follow.steepest, back=BACK, least=min(contour.least, follow.stand_off))
 
 
 def walls_settings(values: Values) -> WallsSettings:

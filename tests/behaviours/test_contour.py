@@ -1,6 +1,7 @@
 """The rolling disc: along walls, round corners, past gaps that it does not fit through."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -92,3 +93,26 @@ def test_contact_is_lost_when_nothing_is_near_it():
 
 def test_alone_with_one_point_the_disc_circles_it():
     assert degrees(np.array([[0.0, 1.5]]), (0.0, 1.5)) == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("corner", [(1.0, -1.2), (0.5, -1.35), (0.3, -1.2)])
+def test_rather_than_turn_back_before_a_narrow_place_the_disc_is_made_smaller(corner):
+    """Between a wall and what stands alone the disc would leave the wall for that, and go round it for ever."""
+    (x, y), back = corner, replace(SETTINGS, back=math.radians(90.0))
+    points = np.concatenate([wall((-5, 1.5), (9, 1.5)), wall((x, y), (x + 4, y)), wall((x, y), (x, y - 4))])
+    alone, kept = (math.degrees(rolled(points, (0.0, 1.5), 1.5, one).direction) for one in (SETTINGS, back))
+    assert abs(alone) > 90
+    assert abs(kept) < 46
+
+
+def test_more_than_half_a_turn_away_is_back_too():
+    posts = np.array([[-1.5, 1.6], [0.3, 1.5], [0.4, 1.5], [0.0, -1.35], [0.1, -1.35]])
+    back = replace(SETTINGS, back=math.radians(90.0))
+    assert degrees(posts, (0.3, 1.5)) > 80  # the other way round the second post, where the disc comes from
+    assert abs(math.degrees(rolled(posts, (0.3, 1.5), 1.5, back).direction)) < 46
+
+
+def test_where_no_disc_goes_on_it_turns_back_all_the_same():
+    end = np.concatenate([wall((-9, 1.6), (1.7, 1.6)), wall((1.7, 1.6), (1.7, -1.6)), wall((1.7, -1.6), (-9, -1.6))])
+    for settings in (SETTINGS, replace(SETTINGS, back=math.radians(90.0))):
+        assert abs(math.degrees(rolled(end, (0.0, 1.6), 1.5, settings).direction)) > 60
