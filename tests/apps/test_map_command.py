@@ -289,7 +289,7 @@ def test_a_recording_cut_short_gives_the_map_so_far(run: Path, tmp_path: Path) -
     cut.write_bytes(whole[: len(whole) // 2])
     result = rplan_map(cut)
     assert result.exit_code == 0
-    assert "was cut short: the map is what was written by then" in result.stderr
+    assert "was cut short: what was written by then is mapped" in result.stderr
 
 
 # --- the page -------------------------------------------------------------------------------------

@@ -9,8 +9,9 @@ from pathlib import Path
 import click
 
 from rplan.apps.files import InputError, unreadable
+from rplan.apps.recordings import recording_at
 from rplan.apps.table import write_csv, write_parquet
-from sim.recording import Recording, RecordingError, read
+from sim.recording import Recording, RecordingError
 
 FILE = click.Path(dir_okay=False, path_type=Path)
 
@@ -30,25 +31,13 @@ def command(
         raise InputError("nothing is asked for: give --csv FILE, --parquet FILE or --video FILE")
     if not (math.isfinite(speed) and 0.01 <= speed <= 1000):
         raise InputError("--speed must lie between 0.01 and 1000")
-    run = _read(recording)
+    run = recording_at(recording, "exported")
     if csv is not None:
         _write(recording, csv, lambda: f"{write_csv(run, csv):,} rows")
     if parquet is not None:
         _write(recording, parquet, lambda: f"{write_parquet(run, parquet):,} rows")
     if video is not None:
         _write(recording, video, lambda: f"{_film(run, video, fps, speed):,} frames")
-
-
-def _read(path: Path) -> Recording:
-    try:
-        run = read(path)
-    except RecordingError as error:
-        raise InputError(str(error)) from None
-    except OSError as error:
-        unreadable(path, error)
-    if run.cut_short:
-        click.echo(f"{path} was cut short: what was written by then is exported", err=True)
-    return run
 
 
 def _write(recording: Path, target: Path, write: Callable[[], str]) -> None:

@@ -10,8 +10,9 @@ import click
 from rplan.apps import talk
 from rplan.apps.drawing.map import BELIEVED, ODOMETRY, STYLES, MapError, Mapped, cell_map, draw, gather
 from rplan.apps.files import InputError, unreadable
+from rplan.apps.recordings import recording_at
 from sim.maps import write_ros
-from sim.recording import Recording, RecordingError, read
+from sim.recording import RecordingError
 
 PICTURE, MAPS = ".png", (".yaml", ".pgm")
 
@@ -40,7 +41,7 @@ def command(
     target = output or recording.with_suffix(PICTURE)
     if target.suffix not in (PICTURE, *MAPS):
         raise InputError(f"{target}: expected FILE.yaml or FILE.pgm (a map for ROS), or FILE.png (a picture)")
-    run = _read(recording)
+    run = recording_at(recording, "mapped")
     try:
         mapped = gather(run, view, math.inf if at is None else at)
         wrote = _write(mapped, target, style)
@@ -50,18 +51,6 @@ def command(
         talk.result({"wrote": [str(path) for path in wrote], **_figures(mapped)})
     else:
         _say(mapped, wrote)
-
-
-def _read(path: Path) -> Recording:
-    try:
-        run = read(path)
-    except RecordingError as error:
-        raise InputError(str(error)) from None
-    except OSError as error:
-        unreadable(path, error)
-    if run.cut_short:
-        click.echo(f"{path} was cut short: the map is what was written by then", err=True)
-    return run
 
 
 def _write(mapped: Mapped, target: Path, style: str) -> tuple[Path, ...]:

@@ -8,8 +8,9 @@ import click
 
 from rplan.apps import talk
 from rplan.apps.files import InputError, unreadable
+from rplan.apps.recordings import recording_at
 from rplan.apps.viewer.page import write_page
-from sim.recording import Recording, RecordingError, read
+from sim.recording import Recording, RecordingError
 
 
 @click.command("replay", short_help="Make a page that plays a recording.")
@@ -27,22 +28,11 @@ def command(recording: Path, output: Path | None) -> None:
     target = output or recording.with_suffix(".html")
     if target.resolve() == recording.resolve():
         raise InputError(f"{target} is the recording itself: write elsewhere")
-    run = _read(recording)
-    if run.cut_short:
-        click.echo(f"{recording} was cut short: what was written by then is played", err=True)
+    run = recording_at(recording, "played")
     why_not = _write(run, recording, target)
     if why_not:
         click.echo(f"the page has no circuit: {why_not}", err=True)
     click.echo(f"wrote {target} ({target.stat().st_size / 1e6:.1f} MB)")
-
-
-def _read(path: Path) -> Recording:
-    try:
-        return read(path)
-    except RecordingError as error:
-        raise InputError(str(error)) from None
-    except OSError as error:
-        unreadable(path, error)
 
 
 def _write(run: Recording, recording: Path, target: Path) -> str:
