@@ -50,6 +50,10 @@ CAR_HULL = 0.27
 PIONEER_HULL = 0.3
 
 
+ROOM = 0.3
+"""[m]: wall along which a disc of this radius can come is reachable."""
+
+
 def plan(follower: str, period: str, side: str, stand_off: float, speed: float, more: str) -> Compiled:
     """Follow the wall."""
     text = PLAN.format(follower=follower, period=period, side=side, stand_off=stand_off, speed=speed, more=more)
@@ -129,7 +133,7 @@ def hour(name: str, world: Scenario, compiled: Compiled, minutes: float, seed: i
     """Drive; what there is to be said of it."""
     episode = Episode(world, seed, compiled.goals.period)
     watch = Watch(episode.world, world.bounds)
-    wall = reachable(walls(episode.world, watch), watch, episode.world.robot.pose)
+    wall = reachable(walls(episode.world, watch), watch, episode.world.robot.pose, ROOM)
     began = time.process_time()
     verdict = episode.run(PlanBrain(compiled), minutes * 60.0, watch)
     took = time.process_time() - began
