@@ -147,7 +147,12 @@ def test_a_branch_that_can_never_be_taken_fails_with_the_situations_of_the_other
     )
 
 
-def test_one_dead_branch_fails_exactly_the_item_of_its_rule_and_says_why(pytester: pytest.Pytester, run) -> None:
+@pytest.mark.parametrize("automatic", ["", "1"])
+def test_one_dead_branch_fails_exactly_the_item_of_its_rule_and_says_why(
+    pytester: pytest.Pytester, run, monkeypatch: pytest.MonkeyPatch, automatic: str
+) -> None:
+    monkeypatch.setenv("CI", automatic)  # where it is set, pytest cuts nothing in its summary
+    monkeypatch.delenv("BUILD_NUMBER", raising=False)
     write(pytester, DEAD + TESTS)
     result = run("--rplan", "-rfE")
     result.assert_outcomes(passed=3, failed=1)
@@ -163,6 +168,7 @@ def test_one_dead_branch_fails_exactly_the_item_of_its_rule_and_says_why(pyteste
         ]
     )
     assert sum(line.endswith("can never be taken") for line in result.stdout.lines) == 1
+    assert result.stdout.lines[-2] in failed, "the summary has one line for it"
 
 
 def test_a_file_of_rules_for_other_plans_has_no_items_of_its_own(pytester: pytest.Pytester, run) -> None:

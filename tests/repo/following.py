@@ -67,6 +67,8 @@ MEASURED = (
 
 PLUGINS = ("-p", "no:cacheprovider", "-p", "rplan.apps.pytest_plugin")
 """Of a reader who has installed no others."""
+UNATTENDED = {"CI", "BUILD_NUMBER"}
+"""Where they are set, pytest shows more than to a reader at a terminal."""
 
 
 class PageError(Exception):
@@ -210,7 +212,11 @@ def run(command: str) -> str:
 
 
 def _run(command: list[str]) -> str:
-    kept = {name: value for name, value in os.environ.items() if not name.startswith(("PYTEST", "COV"))}
+    kept = {
+        name: value
+        for name, value in os.environ.items()
+        if not name.startswith(("PYTEST", "COV")) and name not in UNATTENDED
+    }
     environment = kept | {"PYTHONPATH": str(ROOT), "NO_COLOR": "1", "COLUMNS": "80", "PYTHONDONTWRITEBYTECODE": "1"}
     environment |= {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
     done = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from _pytest._code.code import ReprExceptionInfo, ReprFileLocation, ReprTracebackNative
 
 from rplan.apps.pytest_plugin import shelf_of
 from rplan.apps.pytest_plugin.shelf import Plan, rendered
@@ -46,12 +47,24 @@ class PlanItem(pytest.Item):
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
         if isinstance(excinfo.value, FailedError):
-            return str(excinfo.value)
+            return _told(str(excinfo.value), self.reportinfo())
         return super().repr_failure(excinfo, style)
 
     def place(self, line: int) -> tuple[PathLike[str], int, str]:
         """For reports: file, line from 0, name."""
         return self.path, line - 1, self.name
+
+
+def _told(message: str, place: tuple[str | PathLike[str], int | None, str]) -> ReprExceptionInfo:
+    """The whole message as the failure, its first line alone for the summary: elsewhere pytest cuts that to the width
+    of the terminal, and where `CI` is set it does not.
+    """
+    path, line, _ = place
+    first = message.partition("\n")[0]
+    return ReprExceptionInfo(
+        reprtraceback=ReprTracebackNative([f"{message}\n"]),
+        reprcrash=ReprFileLocation(path=str(path), lineno=(line or 0) + 1, message=first),
+    )
 
 
 class PlanFile(pytest.File):
