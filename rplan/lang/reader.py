@@ -381,9 +381,7 @@ class _Fold:
     def _pop(self, word: Token) -> None:
         if self.open:
             opener, outer = self.open.pop()
-            first, last = self.span(opener), self.span(word)
-            span = Span(first.file, first.line, first.column, last.end_line, last.end_column)
-            outer.append(ListForm(tuple(self.items), span))
+            outer.append(ListForm(tuple(self.items), self.span(opener).to(self.span(word))))
             self.items = outer
         elif not self.spoilt:
             self._extra(word)

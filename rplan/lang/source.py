@@ -29,6 +29,10 @@ class Span:
     def __str__(self) -> str:
         return f"{self.file}:{self.line}:{self.column}"
 
+    def to(self, last: Span) -> Span:
+        """From here up to the end of `last`, which stands behind it in the same file."""
+        return Span(self.file, self.line, self.column, last.end_line, last.end_column)
+
 
 NOWHERE = Span("<built-in>", 1, 1, 1, 1)
 """The place of what no text says."""

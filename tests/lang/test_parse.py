@@ -8,7 +8,8 @@ from typing import get_args
 import pytest
 
 from rplan.lang.diagnostic import Diagnostic, PlanError
-from rplan.lang.parse import COMPARATORS, parse, parse_text
+from rplan.lang.forms.words import COMPARATORS
+from rplan.lang.parse import parse, parse_text
 from rplan.lang.plan import (
     AllOf,
     And,
@@ -461,6 +462,12 @@ def test_name_spaces_are_separate() -> None:
 def test_one_mistake_is_one_error_at_its_place(text: str, code: str, place: tuple[int, int]) -> None:
     error = error_of(text)
     assert (error.code, error.span) == (code, span(1, place[0], 1, place[1]))
+
+
+@pytest.mark.parametrize("goal", ["(ach (at ?place) :depth 2)", "(ach (and (at ?place)) :depth 2)"])
+def test_a_goal_with_a_depth_keeps_the_variables_of_its_rule(goal: str) -> None:
+    rule = plan_of(f"(defgoalr (ach visit ?place) (prio-and {goal} (do leg ?place)))").rules[0]
+    assert print_goal(rule.goal) == f"(prio-and {goal.replace('(ach (at ?place)', '(ach at ?place')} (do leg ?place))"
 
 
 def test_an_if_with_two_parts_is_told_what_it_takes() -> None:
