@@ -22,7 +22,7 @@ Json = dict[str, object]
 
 
 def header(world: World) -> Json:
-    """What does not change: period, bounds, robot, home, donor, goal, slopes, things that stand and things that move.
+    """What does not change: period, bounds, robot, home, donor, goal, what to go round, slopes, what stands, what moves.
 
     A part that the scenario does not have is None or empty.
     """
@@ -37,6 +37,7 @@ def header(world: World) -> Json:
         "home": _pose(world.start),
         "donor": _donor(world),
         "goal": _goal(world),
+        "round": _round(world),
         "slopes": [_slope(slope) for slope in scenario.ground.slopes],
         "things": [_described(thing.placed) for thing in standing],
         "movers": [_described(thing.placed) for thing in world.things if _in_snapshots(world, thing)],
@@ -90,6 +91,11 @@ def _donor(world: World) -> Json | None:
 def _goal(world: World) -> Json | None:
     goal = world.scenario.goal
     return None if goal is None else {"at": list(goal.at), "within": goal.within}
+
+
+def _round(world: World) -> Json | None:
+    task = world.scenario.round
+    return None if task is None else {"about": list(task.about), "turns": task.turns, "within": task.within}
 
 
 def _slope(slope: Slope) -> Json:

@@ -14,7 +14,7 @@ from click.testing import CliRunner, Result
 
 from rplan.apps.cli import cli
 from rplan.apps.simulation import load_world, simulate
-from rplan.apps.viewer.telling import Loser, circuit, telling
+from rplan.apps.viewer.telling import Loser, circuit, rules, telling
 from rplan.apps.wiring import compile_file, plan_header
 from rplan.driver import compile_plan
 from rplan.lang.source import Source
@@ -138,6 +138,26 @@ def test_included_files_come_from_the_recording(tmp_path: Path) -> None:
     assert told.tick({"inputs": 1}) == {}
     missing = dict(header["plan"]) | {"included": []}
     assert telling({"plan": missing})[1].startswith("its plan does not compile")
+
+
+def test_what_stands_in_an_included_file_is_told_with_its_place() -> None:
+    compiled = compile_file(PLANS / "fetch_all" / "fetch_all.rplan")
+    included = {one["rule"]: one for one in rules(compiled)}["(maint runaway)"]
+    text = next(source.text for source in compiled.sources if source.name.endswith("fetch_by_roaming.rplan"))
+    assert included["file"] == "fetch_by_roaming.rplan"
+    assert text.splitlines()[included["line"] - 1].startswith("(defgoalr (maint runaway)")
+    lost = Loser(compiled).lost("0" * compiled.ways.asking, "0" * 9)
+    places = [one["at"].rpartition("/")[2] for one in lost if one["line"] is None]
+    assert places and all(re.fullmatch(r"fetch_by_roaming\.rplan:\d+:\d+", place) for place in places)
+    own = rules(compile_file(FIND))
+    assert all("file" not in one for one in own) and own == plan_header(compile_file(FIND))["rules"]
+
+
+def test_the_page_knows_the_rules_of_included_files(run: Path, tmp_path: Path) -> None:
+    plan = plan_header(compile_file(PLANS / "fetch_all" / "fetch_all.rplan"))
+    rplan_replay(str(recorded(tmp_path / "all.mcap", plan)))
+    told = embedded(tmp_path / "all.html")["rules"]
+    assert len(told) > 5 and {one.get("file") for one in told} == {"fetch_by_roaming.rplan"}
 
 
 def test_a_recording_that_was_cut_short_is_played_as_far_as_it_goes(run: Path, tmp_path: Path) -> None:

@@ -168,6 +168,17 @@ def test_nothing_goes_back_in_the_file(tmp_path: Path) -> None:
     assert [round(tick["t"] * 10) for tick in every] == [*range(8)]
 
 
+def test_the_page_is_told_that_it_is_recorded_and_where_to(tmp_path: Path) -> None:
+    unrecorded = Session(compile_file(FIND), load_world(LOT), 3)
+    assert (unrecorded.state()["recording"], unrecorded.state()["unwritten"]) == ("", "")
+    one = session(tmp_path / "run.mcap")
+    assert one.state()["recording"] == "run.mcap"
+    one.wish({"do": "restart"})
+    assert one.state()["recording"] == "run-2.mcap"
+    one.close()
+    assert one.state()["recording"] == ""
+
+
 def test_a_disk_that_is_full_stops_the_run_and_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     one = session(tmp_path / "run.mcap")
 

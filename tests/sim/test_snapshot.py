@@ -34,10 +34,17 @@ def world() -> World:
     return World(loads(HALL, "hall.yaml"), seed=3)
 
 
+def test_the_header_says_what_to_go_round() -> None:
+    task = "round: {about: [1, 2], turns: 3, within: 2.5}"
+    round_it = World(loads(HALL.replace("goal: {at: [12, 3], within: 0.5 m}", task), "hall.yaml"), seed=3)
+    assert snapshot.header(round_it)["round"] == {"about": [1.0, 2.0], "turns": 3, "within": 2.5}
+
+
 def test_the_header_of_a_world_without_a_donor_has_hull_goal_and_slopes() -> None:
     header: Any = snapshot.header(world())
     assert header["donor"] is None
     assert header["goal"] == {"at": [12.0, 3.0], "within": 0.5}
+    assert header["round"] is None
     assert header["slopes"] == [{"region": [4.0, -4.0, 8.0, 0.0], "rise": 0.1, "uphill": 1.5}]
     assert header["robot"]["shape"] == {"polygon": [[-0.5, -0.3], [0.5, -0.3], [0.5, 0.3], [-0.5, 0.3]]}
     assert header["robot"]["height"] == 0.6

@@ -22,7 +22,7 @@ from behaviours.interface import STOP, Pose
 from rplan.apps.libraries import Catalogue, catalogue
 from rplan.apps.simulation import World
 from rplan.apps.viewer.forcing import forcing
-from rplan.apps.viewer.telling import Loser, circuit
+from rplan.apps.viewer.telling import Loser, circuit, rules
 from rplan.apps.wiring import PlanBrain, plan_header
 from rplan.driver import Compiled
 from rplan.runtime.encode import wrong_number
@@ -271,6 +271,7 @@ class Session:
             "verdict": "",
             "cut_short": False,
             "circuit": self._circuit,
+            "rules": rules(self.compiled),
         } | self.packing.packed()
 
     def header(self) -> Json:
@@ -298,6 +299,8 @@ class Session:
             "breaks": list(wishes.breaks),
             "said": self.said,
             "over": self.over,
+            "recording": self.recorded[-1].name if self._recorder is not None else "",
+            "unwritten": self.unwritten,
         }
 
     def fixed(self) -> Json:

@@ -1,7 +1,7 @@
 """What a page is told of its plan: the circuit with its wires, and which goals lost and what stood against them.
 
-Takes: a compiled plan, and tick by tick inputs and registers. Gives: plain JSON values, and the `Telling` of a
-recording whose header has its plan. Leaves alone: how the page shows them (sim/replay.html).
+Takes: a compiled plan, and tick by tick inputs and registers. Gives: plain JSON values, with the places of its rules,
+and the `Telling` of a recording whose header has its plan. Leaves alone: how the page shows them (sim/replay.html).
 
 A tick's answer follows from inputs and registers alone, so it is found once for each pair of them.
 """
@@ -17,7 +17,7 @@ from rplan.circuit.stats import stats
 from rplan.driver import Compiled
 from rplan.goals.goal import Do, Reduced
 from rplan.lang.diagnostic import PlanError
-from rplan.lang.source import Source
+from rplan.lang.source import Source, Span
 from rplan.ways.lost import lost
 from rplan.ways.way import taken_way
 from rplan.ways.why import Reasons
@@ -47,7 +47,8 @@ class Loser:
     def lost(self, inputs: str, registers: str) -> list[Json]:
         """The goals that set nothing in a tick, in textual order, without the parts of those that lost as a whole.
 
-        {"goal", "because", "reason", "line"}; bits as recordings have them. See rplan/ways/lost.py.
+        {"goal", "because", "reason", "line"}, where it stands in an included file with its place as "at"; bits as
+        recordings have them. See rplan/ways/lost.py.
         """
         key = (inputs, registers)
         if key not in self._known:
@@ -106,8 +107,22 @@ class Loser:
         way = taken_way(ways, inputs, registers)
         for one in () if way.hole else lost(ways, way, inputs, registers):
             if not one.part_of:
-                line = one.span.line if one.span.file == self._compiled.source.name else None
-                yield {"goal": one.goal, "because": one.because, "reason": one.reason, "line": line}
+                place = _place(one.span, self._compiled)
+                yield {"goal": one.goal, "because": one.because, "reason": one.reason} | place
+
+
+def _place(span: Span, compiled: Compiled) -> dict[str, object]:
+    return {"line": span.line} if span.file == compiled.source.name else {"line": None, "at": str(span)}
+
+
+def rules(compiled: Compiled) -> list[Json]:
+    """All rules in their order: {"rule", "line", "end_line"}, of those in an included file also "file", its name."""
+    own = compiled.source.name
+    return [
+        {"rule": r.head, "line": r.span.line, "end_line": r.span.end_line}
+        | ({} if r.span.file == own else {"file": r.span.file.replace("\\", "/").rpartition("/")[2]})
+        for r in compiled.goals.rules
+    ]
 
 
 def _bits(text: str) -> list[bool]:
@@ -133,7 +148,7 @@ def circuit(compiled: Compiled) -> Json:
 
 def telling_of(compiled: Compiled) -> Telling:
     """What the page of a run of this plan is told."""
-    return Telling({"circuit": circuit(compiled)}, Loser(compiled).tick)
+    return Telling({"circuit": circuit(compiled), "rules": rules(compiled)}, Loser(compiled).tick)
 
 
 def telling(header: Json, libraries: Catalogue | None = None) -> tuple[Telling | None, str]:
