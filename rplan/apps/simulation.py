@@ -13,6 +13,7 @@ from importlib.metadata import version
 from pathlib import Path
 from time import perf_counter
 
+from rplan.apps.files import InputError, unreadable
 from rplan.apps.libraries import Catalogue
 from rplan.apps.wiring import PlanBrain, plan_header
 from rplan.driver import Compiled
@@ -23,6 +24,7 @@ from sim.judge import Verdict
 from sim.recording import Recorder
 from sim.scenarios.format import loads
 from sim.scenarios.scenario import Scenario
+from sim.scenarios.schema import ScenarioError
 
 OPEN = "nothing"
 """Shown for a channel that a tick leaves open."""
@@ -94,6 +96,20 @@ def load_world(path: Path) -> World:
 
     file, number = split(str(path))
     return World(*load(file, Options(world=number)))
+
+
+def world_in(path: Path) -> World:
+    """`load_world` for commands: raises InputError, with every problem of a scenario."""
+    from sim.scenarios.importers.imported import WorldFileError
+
+    try:
+        return load_world(path)
+    except ScenarioError as error:
+        raise InputError("the scenario is wrong\n" + "\n".join(f"  {p}" for p in error.problems)) from None
+    except WorldFileError as error:
+        raise InputError(str(error)) from None
+    except OSError as error:
+        unreadable(path, error)
 
 
 @dataclass(slots=True)

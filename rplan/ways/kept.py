@@ -13,8 +13,6 @@ from dataclasses import dataclass
 from rplan.goals.condition import AllOf, AnyOf, Comparison, Condition, Constant, Memory, Named, Not, OutputIs, Percept
 from rplan.ways.reduce import Ways
 
-COUNTING = ("held-for", "within", "at-least")
-
 
 @dataclass(frozen=True, slots=True)
 class Literal:

@@ -6,13 +6,11 @@ import csv
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from io import StringIO
 from multiprocessing import Pipe
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
-from rich.console import Console
 
 from rplan.apps.cli import cli
 from rplan.apps.commands import reproduce as command
@@ -210,14 +208,6 @@ def test_workers_that_cannot_begin_end_it_with_a_clear_line(monkeypatch: pytest.
     monkeypatch.setattr(processes, "run", unfit)
     result = reproduce("T1", "--seeds", "1")
     assert (result.exit_code, result.stderr) == (2, "error: a worker cannot begin: no memory\n")
-
-
-def test_a_bar_shows_how_far_it_is_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    shown = Console(force_terminal=True, file=StringIO())
-    monkeypatch.setattr(command, "Console", lambda **_: shown)
-    with command._progress(2) as progress:
-        progress({"row": "T1", "preset": "paper", "case": "short"})
-    assert "1/2" in shown.file.getvalue()
 
 
 # --- one episode --------------------------------------------------------------------------------------

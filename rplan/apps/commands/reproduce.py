@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from difflib import get_close_matches
 from importlib.util import find_spec
 from pathlib import Path
@@ -12,11 +11,11 @@ from time import perf_counter
 
 import click
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.table import Table
 
 from rplan.apps import talk
 from rplan.apps.files import InputError, unreadable
+from rplan.apps.progress import counting
 from rplan.apps.reproduce import experiment, report
 from rplan.apps.reproduce.experiment import Asked, Batch
 from rplan.apps.reproduce.report import Result
@@ -152,8 +151,8 @@ def _run(every: Sequence[Batch], workers: int) -> tuple[list[Measures], bool]:
     """Measures, and whether Ctrl-C ended it."""
     found: list[Measures] = []
     try:
-        with _progress(sum(len(batch.tasks) for batch in every)) as progress:
-            found.extend(experiment.run(every, workers, progress))
+        with counting(sum(len(batch.tasks) for batch in every)) as count:
+            found.extend(experiment.run(every, workers, lambda measures: count(_episode(measures))))
     except KeyboardInterrupt:
         return found, True
     except EngineError as error:
@@ -161,28 +160,8 @@ def _run(every: Sequence[Batch], workers: int) -> tuple[list[Measures], bool]:
     return found, False
 
 
-@contextmanager
-def _progress(total: int) -> Iterator[Callable[[Measures], None]]:
-    """A bar on stderr with what is being run; none where nobody looks."""
-    console = Console(stderr=True)
-    if not console.is_terminal or total == 0:
-        yield _nothing
-        return
-    columns = (
-        MofNCompleteColumn(),
-        BarColumn(),
-        TextColumn("{task.description}"),
-        TimeElapsedColumn(),
-        TextColumn("left:"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=console, transient=True) as bar:
-        shown = bar.add_task("starting", total=total)
-        yield lambda m: bar.update(shown, advance=1, description=f"{m.get('row')} {m.get('preset')}, {m.get('case')}")
-
-
-def _nothing(_measures: Measures) -> None:
-    """Where nobody looks."""
+def _episode(measures: Measures) -> str:
+    return f"{measures.get('row')} {measures.get('preset')}, {measures.get('case')}"
 
 
 def _replay(asked: Sequence[Asked], seeds: int, case: str | None, seed: int | None, file: Path) -> None:

@@ -19,12 +19,11 @@ from rich.text import Text
 
 from rplan.apps import talk
 from rplan.apps.files import InputError, plan_file, scenario_file, unreadable
-from rplan.apps.simulation import Run, World, load_world, simulate
+from rplan.apps.simulation import Run, World, simulate, world_in
 from rplan.apps.viewer.page import write_page
 from rplan.driver import Compiled
 from rplan.lang.diagnostic import PlanError
 from sim.recording import read
-from sim.scenarios.importers.imported import WorldFileError
 from sim.scenarios.schema import ScenarioError
 
 NOT_DONE = 1
@@ -64,7 +63,7 @@ def command(
         raise InputError("--until is not a number")
     path = plan_file(plan)
     compiled = talk.compiled(path, allow_holes=allow_holes, as_json=as_json)
-    world = _world(scenario_file(scenario, path))
+    world = world_in(scenario_file(scenario, path))
     _check_targets(record, replay, plot)
     with _recording(record, replay, plot) as recording:
         run = _run(compiled, path, world, seed, until, recording)
@@ -75,17 +74,6 @@ def command(
     else:
         _show(run, [target for target in (record, replay, plot) if target is not None])
     raise SystemExit(0 if run.verdict.done else NOT_DONE)
-
-
-def _world(path: Path) -> World:
-    try:
-        return load_world(path)
-    except ScenarioError as error:
-        raise InputError("the scenario is wrong\n" + "\n".join(f"  {p}" for p in error.problems)) from None
-    except WorldFileError as error:
-        raise InputError(str(error)) from None
-    except OSError as error:
-        unreadable(path, error)
 
 
 def _check_targets(*targets: Path | None) -> None:

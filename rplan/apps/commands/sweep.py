@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from importlib.util import find_spec
 from pathlib import Path
@@ -13,12 +12,12 @@ from time import perf_counter
 
 import click
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.table import Table
 
 from rplan.apps import talk
 from rplan.apps.files import InputError, plan_file, scenario_file, unreadable
 from rplan.apps.libraries import LibraryError, catalogue
+from rplan.apps.progress import counting
 from rplan.apps.simulation import load_world
 from rplan.apps.sweep import processes
 from rplan.apps.sweep.grid import MOST, GridError, Loaded, axes, seeds, variants
@@ -232,13 +231,13 @@ def _run(asked: Asked, state: State, journal: Journal) -> None:
     open_tasks = [task for task in asked.tasks if task not in state.rows]
     if not open_tasks:
         return
-    with _progress(asked, state) as progress:
+    with counting(len(asked.tasks), state.resumed, state.counts()) as count:
         rows = _engine(asked, open_tasks)
         try:
             for task, row in rows:
                 journal.add(task, row)
                 state.rows[task] = row
-                progress()
+                count(state.counts())
         except KeyboardInterrupt:
             state.stopped = True
         finally:
@@ -253,26 +252,6 @@ def _engine(asked: Asked, open_tasks: Sequence[Task]) -> Rows:
             return cluster.run(asked.work, open_tasks, asked.workers, asked.scheduler)
         case _:
             return processes.run(asked.work, open_tasks, asked.workers)
-
-
-@contextmanager
-def _progress(asked: Asked, state: State) -> Iterator[Callable[[], None]]:
-    """A bar on stderr with what came out so far; none where nobody looks."""
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield lambda: None
-        return
-    columns = (
-        MofNCompleteColumn(),
-        BarColumn(),
-        TextColumn("{task.description}"),
-        TimeElapsedColumn(),
-        TextColumn("left:"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=console, transient=True) as bar:
-        shown = bar.add_task(state.counts(), total=len(asked.tasks), completed=state.resumed)
-        yield lambda: bar.update(shown, completed=len(state.rows), description=state.counts())
 
 
 # --- the summary --------------------------------------------------------------------------------------

@@ -9,7 +9,6 @@ The workers are those of sweeps (rplan/apps/sweep/processes.py): a killed one co
 from __future__ import annotations
 
 import json
-import multiprocessing
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
@@ -24,7 +23,7 @@ from rplan.apps.reproduce.watch import watch
 from rplan.apps.simulation import World, load_world
 from rplan.apps.sweep import processes
 from rplan.apps.sweep.grid import GridError, path, with_value
-from rplan.apps.sweep.processes import Worker, one_thread_each
+from rplan.apps.sweep.processes import Worker
 from rplan.apps.sweep.work import Change, Runner, Task, Variant, Work, changed, head, in_words
 from rplan.apps.wiring import compile_file
 from rplan.driver import Compiled
@@ -136,14 +135,8 @@ def serve(connection: Connection) -> None:
 
 
 def start() -> Worker:
-    """A worker process that shares nothing with this one."""
-    context = multiprocessing.get_context("spawn")
-    ours, theirs = context.Pipe()
-    with one_thread_each():
-        process = context.Process(target=serve, args=(theirs,), daemon=True)
-        process.start()
-    theirs.close()
-    return Worker(process, ours)
+    """A worker process with a `Bench`."""
+    return processes.start(serve)
 
 
 # --- the run ------------------------------------------------------------------------------------------

@@ -113,12 +113,12 @@ class Worker:
     task: Task | None = None
 
 
-def start() -> Worker:
-    """A worker process that shares nothing with this one."""
+def start(serving: Callable[[Connection], None] = serve) -> Worker:
+    """A worker process that shares nothing with this one; serving: what it does."""
     context = multiprocessing.get_context("spawn")
     ours, theirs = context.Pipe()
     with one_thread_each():
-        process = context.Process(target=serve, args=(theirs,), daemon=True)
+        process = context.Process(target=serving, args=(theirs,), daemon=True)
         process.start()
     theirs.close()
     return Worker(process, ours)

@@ -78,11 +78,10 @@ def read(path: Path, options: Options) -> Imported:
 
 @dataclass(frozen=True, slots=True)
 class _Model:
-    """A model of the world at its pose; nested: it stands on another one."""
+    """A model of the world at its pose."""
 
     entity: Entity
     pose: Pose
-    nested: bool = False
 
     @property
     def is_robot(self) -> bool:
@@ -111,7 +110,7 @@ def _models(world: stage_text.World) -> list[_Model]:
             raise model.entity.fault(f"the world has more than {MOST_MODELS:,} models")
         if model.entity.kind in SHAPES and not model.is_robot:
             parts = [part for part in model.entity.parts if part.kind not in NO_MODEL]
-            waiting += [_Model(part, _on(model.pose, _pose(part)), True) for part in reversed(parts)]
+            waiting += [_Model(part, _on(model.pose, _pose(part))) for part in reversed(parts)]
     return found
 
 
