@@ -22,7 +22,7 @@ Json = dict[str, object]
 
 
 def header(world: World) -> Json:
-    """What does not change: period, bounds, robot, home, donor, goal, what to go round, slopes, what stands, what moves.
+    """What does not change: period, bounds, robot, home, donor, goal, place to go round, slopes, what stands and moves.
 
     A part that the scenario does not have is None or empty.
     """
