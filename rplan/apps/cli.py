@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 from importlib import import_module
+from io import TextIOWrapper
 from keyword import iskeyword
 
 import click
@@ -80,8 +81,10 @@ def main() -> None:
     """The entry point.
 
     A fault of rplan's own says so and exits with 70, what the system refuses (a full disk) with 2. Ctrl-C and a reader
-    that goes away are click's affair: it ends quietly.
+    that goes away are click's affair: it ends quietly. A letter that the terminal does not have is a question mark.
     """
+    if isinstance(sys.stdout, TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")
     try:
         cli()
     except OSError as error:

@@ -7,10 +7,10 @@ alone: pytest, whose fixture `plan` makes these; without pytest `PlanUnderTest.o
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Self
+from typing import Self, TypeVar
 
 from rplan.apps.commands.test import OPEN
 from rplan.apps.libraries import Catalogue
@@ -26,10 +26,12 @@ from rplan.apps.trying import (
     shown,
     try_golden,
     unexpected,
+    unit_of,
     unwatched,
 )
 from rplan.apps.wiring import PlanBrain, compile_file, decider
 from rplan.driver import Compiled
+from rplan.lang.diagnostic import PlanError
 from rplan.lang.suggest import close
 from rplan.lang.units import BadNumberError, canonical_number, read_number
 from rplan.runtime.encode import PerceptValue
@@ -39,8 +41,10 @@ from rplan.ways.situations import nothing
 from rplan.ways.way import TakenWay
 from sim.episode import Episode
 from sim.judge import Verdict
-from sim.recording import read
+from sim.recording import RecordingError, read
+from sim.scenarios.schema import ScenarioError
 
+Thing = TypeVar("Thing")
 LONGEST = 1_000_000
 """Ticks in a row, at most."""
 __tracebackhide__ = True
@@ -92,7 +96,7 @@ class PlanUnderTest:
 
     def golden(self, ticks: Path | str) -> Self:
         """Golden ticks stand. A file that is not found as it stands is one beside the plan; `TicksError`, OSError."""
-        golden = read_golden(self._beside(ticks), self.compiled)
+        golden = _read(lambda: read_golden(self._beside(ticks), self.compiled))
         trace = Trace(self.compiled.ways)
         stood = try_golden(decider(self.compiled), trace, golden, self.watch, ways=self.ways)
         if stood.differing:
@@ -114,6 +118,14 @@ class PlanUnderTest:
         Nothing is moved by what this plan decides. Raises RecordingError, PlanError, OSError.
         """
         return tuple(_changed(self, Path(recording)))
+
+
+def _read(how: Callable[[], Thing]) -> Thing:
+    """What is read; where it cannot be, the error begins here, without the frames of who reads it."""
+    try:
+        return how()
+    except (OSError, PlanError, ScenarioError, RecordingError) as error:
+        raise error.with_traceback(None) from None
 
 
 # --- ticks by hand ---
@@ -188,10 +200,16 @@ class Run:
             return self._truth(name, value == "true", False)
         if kind_of(self._plan.compiled, key) != "number":
             raise TicksError(f"`{name}` is true or false, not {value}")
+        return key, self._number(name, value, unit_of(self._plan.compiled, key))
+
+    def _number(self, name: str, value: str, unit: str) -> float:
         try:
-            return key, read_number(value)[0]
+            number, found = read_number(value)
         except BadNumberError as error:
             raise TicksError(f"`{name}`: {error}") from None
+        if found not in ("", unit):
+            raise TicksError(f"`{name}={value}`: its unit is {unit or 'none'}, not {found}")
+        return number
 
     def _truth(self, name: str, value: bool, wrapped: bool) -> tuple[str, bool]:
         key = named(name.removesuffix(")") if wrapped else name, self._names)
@@ -211,10 +229,7 @@ class Run:
         known = [output.name for output in self._plan.compiled.goals.outputs]
         for given, value in outputs.items():
             name = given if given in known else given.replace("_", "-")
-            if name not in known:
-                meant = close(name, known)
-                hint = f"did you mean `{meant}`?" if meant else f"there are: {', '.join(known)}"
-                raise TicksError(f"the plan has no output `{given}`; {hint}")
+            _check_output(name, known)
             yield name, self._value(name, value)
 
     def _value(self, output: str, value: str | float | None) -> str | None:
@@ -226,6 +241,13 @@ class Run:
         if isinstance(value, float):
             text = canonical_number(value, "")
         return f"({text})" if text not in texts and f"({text})" in texts else text
+
+
+def _check_output(name: str, known: Sequence[str]) -> None:
+    if name not in known:
+        meant = close(name, known)
+        hint = f"did you mean `{meant}`?" if meant else f"there are: {', '.join(known)}"
+        raise TicksError(f"the plan has no output `{name}`; {hint}")
 
 
 def said(
@@ -287,6 +309,7 @@ class EpisodeRun:
         """When [s] another value was sent, and which."""
         found: list[tuple[float, str | None]] = []
         for moment in self.trace:
+            _check_output(output, list(moment.sent))
             value = moment.sent[output]
             if not found or found[-1][1] != value:
                 found.append((moment.time, value))
@@ -311,8 +334,9 @@ class EpisodeUnderTest:
     def run(self, until: float | None = None) -> EpisodeRun:
         """Run it, at most until so many seconds. Raises PlanError, ScenarioError, OSError."""
         compiled = self._plan.compiled
-        brain = PlanBrain(compiled, self._plan.libraries)
-        episode = Episode(load_world(self._scenario).scenario, self._seed, compiled.goals.period)
+        world = _read(lambda: load_world(self._scenario))
+        brain = _read(lambda: PlanBrain(compiled, self._plan.libraries))
+        episode = Episode(world.scenario, self._seed, compiled.goals.period)
         seen = _Seen(brain, self._plan.watch)
         try:
             verdict = episode.run(brain, until, seen)
@@ -356,8 +380,8 @@ class Changed:
 
 
 def _changed(plan: PlanUnderTest, path: Path) -> Iterator[Changed]:
-    brain = PlanBrain(plan.compiled, plan.libraries)
-    recording = read(path)
+    recording = _read(lambda: read(path))
+    brain = _read(lambda: PlanBrain(plan.compiled, plan.libraries))
     try:
         for number, (reading, recorded) in enumerate(zip(recording.readings, recording.ticks, strict=False)):
             note = recorded.get("plan")

@@ -204,6 +204,12 @@ def kind_of(compiled: Compiled, text: str) -> str:
     return "number" if text in number_percepts(compiled.ways) else _known(compiled).get(text[1:-1], "bool")
 
 
+def unit_of(compiled: Compiled, text: str) -> str:
+    """The SI unit of a percept that is a number; nothing where it has none."""
+    function = compiled.goals.functions.get(text[1:-1].partition(" ")[0])
+    return function.type.unit if function is not None and function.type is not None else ""
+
+
 def try_ticks(decide: Decider, golden: Golden, watch: Watch) -> Difference | None:
     """The first golden tick whose outputs, or hole, are others now; ways are not compared."""
     for number, tick in enumerate(golden.ticks):

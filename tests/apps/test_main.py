@@ -95,6 +95,14 @@ def apart(*arguments: str, stdout: int = subprocess.PIPE) -> subprocess.Popen[by
     )
 
 
+def test_a_terminal_without_the_letters_shows_the_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PYTHONIOENCODING", "latin-1")
+    with apart("inspect", str(PLANS / "make_room"), "--table") as process:
+        said, wrong = process.communicate()
+    assert (process.returncode, wrong) == (0, b"")
+    assert "  ?  action=(move-away-from-danger)" in said.decode("latin-1")
+
+
 def test_a_reader_that_goes_away_is_left_without_a_word() -> None:
     with apart("list", "--json") as process:
         assert process.stdout is not None

@@ -154,6 +154,7 @@ def test_tests_that_say_everything_notice_everything(tmp_path: Path) -> None:
     found = values(tmp_path, RULE + FLEES + RESTS)
     assert (found["share"], found["counts"]["survived"]) == (1.0, 0)
     assert {one["by"] for one in found["mutants"] if one["verdict"] == "killed"} == {"test flees", "test rests"}
+    assert run(tmp_path, RULE + FLEES + RESTS).stdout.splitlines()[1:] == ["  5 of 5 noticed (100 %): 5 by deftest"]
 
 
 def test_what_survives_is_shown_with_its_place_and_a_situation(tmp_path: Path) -> None:

@@ -68,6 +68,12 @@ def test_the_line_to_go_on_with_works(tmp_path: Path, monkeypatch: pytest.Monkey
     assert rplan("check", ".", "--library", "stroll.py").stdout == "shy: the plan is sound (no hole)\n"
 
 
+def test_the_line_to_go_on_with_works_in_a_folder_with_spaces(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    last = rplan("new", "über uns/shy").stdout.splitlines()[-1]
+    assert shlex.split(last)[3:8] == ["cd", "über uns/shy", "&&", "rplan", "check"]
+
+
 def test_the_tests_of_the_project_notice_every_slip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     rplan("new", ".", "--name", "shy")

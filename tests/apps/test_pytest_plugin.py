@@ -169,6 +169,15 @@ def test_one_dead_branch_fails_exactly_the_item_of_its_rule_and_says_why(
     )
     assert sum(line.endswith("can never be taken") for line in result.stdout.lines) == 1
     assert result.stdout.lines[-2] in failed, "the summary has one line for it"
+    assert " - not every branch of (ach move)" in failed[0]
+
+
+def test_one_line_a_failure_is_its_place_and_what_it_says_first(pytester: pytest.Pytester, run) -> None:
+    path = write(pytester, DEAD + TESTS)
+    lines = run("--rplan", "--tb=line").stdout.lines
+    begin = next(number for number, line in enumerate(lines) if " FAILURES " in line)
+    assert lines[begin + 1] == f"{path}:11: not every branch of (ach move) can be taken"
+    assert lines[begin + 2].startswith("====")
 
 
 def test_a_file_of_rules_for_other_plans_has_no_items_of_its_own(pytester: pytest.Pytester, run) -> None:

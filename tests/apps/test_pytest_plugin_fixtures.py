@@ -121,6 +121,7 @@ def test_a_hole_is_not_as_expected_unless_it_is_said(tmp_path: Path) -> None:
         ("distance", "`distance` is a number: write `distance=0.3`"),
         ("near=3", "`near` is true or false, not 3"),
         ("distance=far", "`distance`: `far` begins like a number and is none"),
+        ("distance=3s", "`distance=3s`: its unit is m, not s"),
     ],
 )
 def test_a_wrong_percept_is_one_clear_line(given: str, says: str, guard: PlanUnderTest) -> None:
@@ -270,3 +271,31 @@ def test_a_plan_that_is_not_there_or_wrong_is_one_clear_failure(pytester: pytest
     result = run()
     result.assert_outcomes(failed=2, passed=1)
     result.stdout.fnmatch_lines(["there is no file or folder none.rplan*", "error?no-rule?: *"])
+    assert result.stdout.str().count("\nthere is no file or folder none.rplan") == 1
+    assert "another exception" not in result.stdout.str()
+
+
+def test_a_folder_beside_the_test_is_its_plan(pytester: pytest.Pytester, run) -> None:
+    (pytester.path / "robot").mkdir()
+    (pytester.path / "robot" / "guard.rplan").write_text(GUARD, encoding="utf-8")
+    pytester.makepyfile("def test_it(plan):\n    plan('robot').given('near').after('1s').expect(action='flee')\n")
+    run().assert_outcomes(passed=1)
+
+
+@pytest.mark.parametrize(
+    ("does", "says"),
+    [
+        ("golden('none.ticks')", "FileNotFoundError: *none.ticks*"),
+        ("episode('none.yaml').run()", "FileNotFoundError: *none.yaml*"),
+        ("replayed('none.mcap')", "FileNotFoundError: *none.mcap*"),
+        ("replayed(__file__)", "*RecordingError: *is not an MCAP file*"),
+        ("episode('room.yaml').run(until=0.3).switches('akshun')", "*the plan has no output `akshun`*"),
+    ],
+)
+def test_what_cannot_be_read_is_said_where_the_test_asks(does: str, says: str, pytester: pytest.Pytester, run) -> None:
+    (pytester.path / "room.yaml").write_text(NOOK, encoding="utf-8")
+    pytester.makepyfile(f"def test_it(plan):\n    plan('make_room').{does}\n")
+    result = run("--tb=short")
+    shown = [line for line in result.stdout.lines if ": in " in line]
+    assert [line.partition(":")[0] for line in shown] == [Path(pytester.path).name.rstrip("0123456789") + ".py"], shown
+    result.stdout.fnmatch_lines([f"E   {says}"])

@@ -67,8 +67,10 @@ MEASURED = (
 
 PLUGINS = ("-p", "no:cacheprovider", "-p", "rplan.apps.pytest_plugin")
 """Of a reader who has installed no others."""
-UNATTENDED = {"CI", "BUILD_NUMBER"}
-"""Where they are set, pytest shows more than to a reader at a terminal."""
+PLAIN: dict[str, str | None] = {"NO_COLOR": "1"} | dict.fromkeys(
+    ("CI", "BUILD_NUMBER", "FORCE_COLOR", "CLICOLOR_FORCE", "PY_COLORS", "TTY_COMPATIBLE")
+)
+"""What programs print to a reader at a plain terminal: no colours, and summaries cut to its width."""
 
 
 class PageError(Exception):
@@ -200,7 +202,7 @@ def run(command: str) -> str:
             return ""
         case "rplan":
             text = shlex.split(given)[1] + "\n" if given else None
-            done = CliRunner().invoke(cli, arguments, input=text, env={"COLUMNS": "100"})
+            done = CliRunner().invoke(cli, arguments, input=text, env=PLAIN | {"COLUMNS": "100"})
             if done.exit_code not in (0, 1) or (done.exception and not isinstance(done.exception, SystemExit)):
                 raise PageError(f"{command}: {done.output}{done.exception}")
             return done.output
@@ -215,9 +217,9 @@ def _run(command: list[str]) -> str:
     kept = {
         name: value
         for name, value in os.environ.items()
-        if not name.startswith(("PYTEST", "COV")) and name not in UNATTENDED
+        if not name.startswith(("PYTEST", "COV")) and name not in PLAIN
     }
-    environment = kept | {"PYTHONPATH": str(ROOT), "NO_COLOR": "1", "COLUMNS": "80", "PYTHONDONTWRITEBYTECODE": "1"}
+    environment = kept | {"NO_COLOR": "1", "PYTHONPATH": str(ROOT), "COLUMNS": "80", "PYTHONDONTWRITEBYTECODE": "1"}
     environment |= {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
     done = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
     if done.returncode not in (0, 1):

@@ -320,9 +320,8 @@ def _say(compiled: Compiled, fates: Sequence[Fate], every: int, seconds: float) 
         (counts[EQUAL], "make no difference"),
         (counts[INVALID], "are no plan"),
     ]
-    click.echo(
-        "  " + ", ".join(f"{count} {words}" for count, words in rest if count) if any(c for c, _ in rest) else ""
-    )
+    if any(count for count, _ in rest):
+        click.echo("  " + ", ".join(f"{count} {words}" for count, words in rest if count))
     for one in fates:
         if one.verdict in (SURVIVED, UNDECIDED):
             click.echo(f"{one.mutant.span}: {one.mutant.where}: {one.mutant.change}")

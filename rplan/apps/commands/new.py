@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from shlex import quote
 from string import Template
 
 import click
@@ -60,7 +61,8 @@ def _name(name: str, *, given: bool) -> str:
         return name
     hint = "" if given else "; give one with --name"
     raise InputError(
-        f"{name!r} is no name for a plan: at most {LONGEST_NAME} letters and digits, in words joined by '-'{hint}"
+        f"{name!r} is no name for a plan: a letter, then letters and digits, in words joined by '-', "
+        f"at most {LONGEST_NAME} in all{hint}"
     )
 
 
@@ -77,7 +79,7 @@ def _show(folder: Path, files: dict[str, str], bare: bool) -> None:
     wide = max(map(len, files))
     for path in files:
         click.echo(f"  {path:<{wide}}  {_says(path)}")
-    click.echo(f"\nGo on with: cd {folder} && rplan check .{'' if bare else ' --library stroll.py'}")
+    click.echo(f"\nGo on with: cd {quote(str(folder))} && rplan check .{'' if bare else ' --library stroll.py'}")
 
 
 def _says(path: str) -> str:

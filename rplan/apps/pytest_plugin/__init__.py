@@ -86,13 +86,14 @@ def plan(request: pytest.FixtureRequest) -> Callable[[str | Path], PlanUnderTest
         __tracebackhide__ = True
         beside = request.path.parent / path
         try:
-            return shelf_of(request.config).under_test(beside if beside.exists() else plan_file(str(path)))
+            return shelf_of(request.config).under_test(plan_file(str(beside if beside.exists() else path)))
         except InputError as error:
-            pytest.fail(error.format_message(), pytrace=False)
+            said = error.format_message()
         except PlanError as error:
             from rplan.apps.pytest_plugin.shelf import rendered
 
-            pytest.fail(rendered(error), pytrace=False)
+            said = rendered(error)
+        pytest.fail(said, pytrace=False)
 
     return opened
 

@@ -33,6 +33,8 @@ MOST_EXPLAINED = 5
 """So many failing rules of a plan are shown with situations; those after them say what can never be taken alone."""
 LARGE = 200
 """Plans with more forks are not asked for the reasons; `rplan check` says them."""
+PLACE = re.compile(r"^.+?(:\d+){1,2}: ")
+"""Before a message: where it is."""
 NEVER_TEXTS = ("dead", "shadowed", "always-true", "always-false", "duplicate-condition", "duplicate-rule")
 
 
@@ -47,7 +49,7 @@ class PlanItem(pytest.Item):
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
         if isinstance(excinfo.value, FailedError):
-            return _told(str(excinfo.value), self.reportinfo())
+            return _told(str(excinfo.value), self.reportinfo(), whole=self.config.getoption("tbstyle") != "line")
         return super().repr_failure(excinfo, style)
 
     def place(self, line: int) -> tuple[PathLike[str], int, str]:
@@ -55,14 +57,15 @@ class PlanItem(pytest.Item):
         return self.path, line - 1, self.name
 
 
-def _told(message: str, place: tuple[str | PathLike[str], int | None, str]) -> ReprExceptionInfo:
-    """The whole message as the failure, its first line alone for the summary: elsewhere pytest cuts that to the width
-    of the terminal, and where `CI` is set it does not.
+def _told(message: str, place: tuple[str | PathLike[str], int | None, str], *, whole: bool) -> ReprExceptionInfo:
+    """The message as the failure, for `--tb=line` nothing of it; for the summary its first line without the place.
+
+    Elsewhere pytest cuts that line to the width of the terminal; where `CI` is set it does not.
     """
     path, line, _ = place
-    first = message.partition("\n")[0]
+    first = PLACE.sub("", message.partition("\n")[0])
     return ReprExceptionInfo(
-        reprtraceback=ReprTracebackNative([f"{message}\n"]),
+        reprtraceback=ReprTracebackNative([f"{message}\n"] if whole else []),
         reprcrash=ReprFileLocation(path=str(path), lineno=(line or 0) + 1, message=first),
     )
 
