@@ -24,7 +24,7 @@ from rplan.ways.coverage import review
 BLESS = os.environ.get("RPLAN_BLESS") == "1"
 SECTION = re.compile(r"^## ([\w-]+)\n(.*?)(?=^## |\Z)", re.MULTILINE | re.DOTALL)
 EXAMPLE = re.compile(r"^```lisp wrong\n(.*?)^```\n\n```text\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-WHERE_THE_CODE_IS = {"Diagnostic": 0, "error": 0, "_error": 0, "shown": 2, "_unexpected": 2, "add": 1}
+WHERE_THE_CODE_IS = {"Diagnostic": 0, "error": 0, "_error": 0, "shown": 2, "unexpected": 2, "add": 1}
 WITHOUT_EXAMPLE = ("not-decided", "not-text", "too-deep", "too-large", "too-many-errors")
 """Codes whose examples are too long or no text; tests/errors has most of them."""
 
