@@ -30,6 +30,7 @@ from behaviours.interface import Reading
 from sim import chunks
 from sim import readings as texts
 from sim.chunks import BROKEN, MAGIC
+from sim.plain import Json as Json
 from sim.readings import ReadingTexts
 from sim.viewing import View
 
@@ -41,8 +42,6 @@ CHUNK = 16 * 1024
 
 KEEP_S = 0.2
 """After so much simulated time [s] a chunk is closed and written: what a run that is killed may lose."""
-
-Json = Mapping[str, object]
 
 
 class RecordingError(Exception):

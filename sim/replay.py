@@ -22,6 +22,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from behaviours.interface import Ranges, Reading
+from sim.plain import mapping
 from sim.recording import Json, Recording, json_text
 
 MILLI, CENTI = 1000, 100
@@ -118,11 +119,6 @@ def _rounded(value: object) -> object:
             return value
 
 
-def _part(tick: Json, name: str) -> Json:
-    part = tick.get(name)
-    return part if isinstance(part, Mapping) else {}
-
-
 def _fixation(world: Json, sensor: str, names: Sequence[str]) -> list[object] | None:
     """What a sensor of the head saw, as a row; None where it saw nothing new."""
     seen = world.get(sensor)
@@ -130,14 +126,14 @@ def _fixation(world: Json, sensor: str, names: Sequence[str]) -> list[object] | 
 
 
 def _command(world: Json, actuator: str) -> object:
-    return _part(world, "command").get(actuator)
+    return mapping(world.get("command")).get(actuator)
 
 
 def world_rows(world: Json) -> Iterator[tuple[str, int, object]]:
     """What moves in a tick: (track, steps a unit, row)."""
     for name in WORLD_TRACKS:
         yield name, MILLI, world.get(name)
-    for name, pose in _part(world, "movers").items():
+    for name, pose in mapping(world.get("movers")).items():
         yield f"mover {name}", MILLI, pose
     yield "sonar", CENTI, world.get("sonar")
     yield "ir", MILLI, _fixation(world, "ir", ("detected", "offset", "strength", "pan"))
@@ -159,7 +155,7 @@ class Packing:
 
     def tick(self, tick: Json, more: Json | None = None) -> None:
         """Add a tick; more: what is told beside it, by name."""
-        index, t, world, plan = len(self.milliseconds), tick.get("t"), _part(tick, "world"), tick.get("plan")
+        index, t, world, plan = len(self.milliseconds), tick.get("t"), mapping(tick.get("world")), tick.get("plan")
         self.milliseconds.append(round(t * 1000) if isinstance(t, int | float) else index * 100)
         for name, scale, row in world_rows(world):
             self.tracks.setdefault(name, Track(scale)).add(index, row)
@@ -168,7 +164,7 @@ class Packing:
         if isinstance(plan, Mapping):
             for name in PLAN_RUNS:
                 self._run(name, index, plan.get(name))
-            for name, view in _part(plan, "shown").items():
+            for name, view in mapping(plan.get("shown")).items():
                 self._view(name, index, view)
             for name, value in (more or {}).items():
                 self._run(name, index, value)
@@ -259,8 +255,8 @@ def title(header: Json) -> str:
     """What a run is called: its plan and its scenario."""
     scenario = header.get("scenario")
     names = [
-        _part(header, "plan").get("name"),
-        scenario if isinstance(scenario, str) else _part(header, "scenario").get("name"),
+        mapping(header.get("plan")).get("name"),
+        scenario if isinstance(scenario, str) else mapping(header.get("scenario")).get("name"),
     ]
     return " · ".join([str(name) for name in names if name] or ["a run"])
 

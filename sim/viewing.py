@@ -21,7 +21,7 @@ A lidar or ring of sonars of which there are several has its name behind a slash
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -63,9 +63,9 @@ from foxglove.messages import (
 from numpy.typing import NDArray
 
 from behaviours.interface import Ranges, Reading, Scan
+from sim.plain import Json, listed, mapping, number
 from sim.raster import Raster, rasterise
 
-Json = Mapping[str, object]
 Row = tuple[float, float, float]
 Ring = list[tuple[float, float]]
 
@@ -82,21 +82,6 @@ HERE = (0.0, 0.0, 0.0)
 
 
 # --- plain values -----------------------------------------------------------------------------------
-
-
-def mapping(value: object) -> Json:
-    """The value where it is a mapping, otherwise an empty one."""
-    return value if isinstance(value, Mapping) else {}
-
-
-def listed(value: object) -> Sequence[object]:
-    """The value where it is a list, otherwise an empty one."""
-    return value if isinstance(value, list | tuple) else ()
-
-
-def number(value: object, otherwise: float = math.nan) -> float:
-    """The value where it is a number."""
-    return float(value) if isinstance(value, int | float) else otherwise
 
 
 def row(value: object) -> Row | None:

@@ -15,9 +15,10 @@ from __future__ import annotations
 import csv
 import json
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
+from sim.plain import listed, mapping
 from sim.recording import Json, Recording
 
 Row = dict[str, object]
@@ -38,22 +39,22 @@ AFTER = {"hole": "BOOLEAN", "way": "VARCHAR", "given_up": "VARCHAR", "faults": "
 
 def columns(header: Json) -> dict[str, str]:
     """Name -> SQL type, in order."""
-    plan = _mapping(header.get("plan"))
+    plan = mapping(header.get("plan"))
     named = dict(BEFORE)
-    named |= {str(text): "BOOLEAN" for text in _listed(plan.get("inputs"))}
-    outputs = [str(name) for name in _listed(plan.get("outputs"))]
+    named |= {str(text): "BOOLEAN" for text in listed(plan.get("inputs"))}
+    outputs = [str(name) for name in listed(plan.get("outputs"))]
     named |= {f"{kind} {name}": "VARCHAR" for kind in ("output", "sent") for name in outputs}
     return named | AFTER
 
 
 def rows(recording: Recording) -> Iterator[Row]:
     """Column -> value for each tick; what a tick does not say is None."""
-    inputs = [str(text) for text in _listed(_mapping(recording.header.get("plan")).get("inputs"))]
+    inputs = [str(text) for text in listed(mapping(recording.header.get("plan")).get("inputs"))]
     for tick in recording.ticks:
         yield (
             {"tick": tick.get("tick"), "t": tick.get("t")}
-            | _world(_mapping(tick.get("world")))
-            | _plan(_mapping(tick.get("plan")), inputs)
+            | _world(mapping(tick.get("world")))
+            | _plan(mapping(tick.get("plan")), inputs)
         )
 
 
@@ -92,33 +93,32 @@ def write_parquet(recording: Recording, path: Path | str) -> int:
 
 
 def _world(world: Json) -> Row:
-    command = _mapping(world.get("command"))
+    command = mapping(world.get("command"))
     row: Row = {"stage": world.get("stage"), "on_board": world.get("on_board"), "flippers": command.get("flippers")}
     row |= _spread(world.get("robot"), ("x", "y", "heading"))
     row |= _spread(world.get("odometry"), ("odometry_x", "odometry_y", "odometry_heading"))
     row |= _spread(command.get("drive"), ("speed", "turn_rate"))
     row |= _spread(command.get("head"), ("look_pan", "look_tilt"))
     row |= _spread(world.get("head"), ("pan", "tilt"))
-    row["contacts"] = _joined(_mapping(contact).get("thing") for contact in _listed(world.get("contacts")))
+    row["contacts"] = _joined(mapping(contact).get("thing") for contact in listed(world.get("contacts")))
     return row
 
 
 def _plan(plan: Json, inputs: Sequence[str]) -> Row:
-    way = _mapping(plan.get("way"))
+    way = mapping(plan.get("way"))
     row: Row = {text: bit == "1" for text, bit in zip(inputs, str(plan.get("inputs", "")), strict=False)}
-    row |= {f"output {name}": value for name, value in _mapping(plan.get("outputs")).items()}
-    row |= {f"sent {name}": value for name, value in _mapping(plan.get("sent")).items()}
-    row |= {"hole": plan.get("hole"), "way": _joined(_listed(way.get("rules")))}
-    row["given_up"] = _joined(_mapping(lost).get("member") for lost in _listed(way.get("given_up")))
+    row |= {f"output {name}": value for name, value in mapping(plan.get("outputs")).items()}
+    row |= {f"sent {name}": value for name, value in mapping(plan.get("sent")).items()}
+    row |= {"hole": plan.get("hole"), "way": _joined(listed(way.get("rules")))}
+    row["given_up"] = _joined(mapping(lost).get("member") for lost in listed(way.get("given_up")))
     row["faults"] = _joined(
-        f"{_mapping(fault).get('competence')}: {_mapping(fault).get('message')}"
-        for fault in _listed(plan.get("faults"))
+        f"{mapping(fault).get('competence')}: {mapping(fault).get('message')}" for fault in listed(plan.get("faults"))
     )
     return row
 
 
 def _spread(value: object, names: Sequence[str]) -> Row:
-    return dict(zip(names, _listed(value), strict=False))
+    return dict(zip(names, listed(value), strict=False))
 
 
 def _joined(parts: Iterable[object]) -> str | None:
@@ -136,11 +136,3 @@ def _text(value: object) -> object:
             return value
         case _:
             return json.dumps(value, ensure_ascii=False, separators=(",", ":"))
-
-
-def _mapping(value: object) -> Json:
-    return value if isinstance(value, Mapping) else {}
-
-
-def _listed(value: object) -> Sequence[object]:
-    return value if isinstance(value, list | tuple) else ()

@@ -13,7 +13,14 @@ from rplan.goals.claims import resolve_assumptions, resolve_properties
 from rplan.goals.operators import checked_operators
 from rplan.goals.papercuts import check_channels
 from rplan.goals.regress import RegressionError, regress
-from rplan.goals.resolve import resolve_condition, resolve_definitions, resolve_outputs, resolve_settings, resolve_value
+from rplan.goals.resolve import (
+    arguments_said,
+    resolve_condition,
+    resolve_definitions,
+    resolve_outputs,
+    resolve_settings,
+    resolve_value,
+)
 from rplan.goals.scope import DEEPEST, LONGEST, Findings, Scope, report_unused, scope_of
 from rplan.goals.signature import Libraries
 from rplan.goals.substitute import Substitution, has_variables, unfold
@@ -295,7 +302,7 @@ class _Reducer:
         rules = self.scope.rules.get((kind, name), [])
         if rules and all(len(rule.parameters) != len(goal.arguments) for rule in rules):
             self.scope.findings.add(
-                "error", "wrong-arity", f"no rule for `({kind} {name} …)` takes {_arguments(len(goal.arguments))}",
+                "error", "wrong-arity", f"no rule for `({kind} {name} …)` takes {arguments_said(len(goal.arguments))}",
                 goal.span, related=[Related("a rule is here", rule.head_span) for rule in rules],
                 hint=f"there are: {_heads(rules)}",
             )  # fmt: skip
@@ -321,10 +328,6 @@ def _head(key: Key) -> str:
 
 def _heads(rules: list[p.Rule]) -> str:
     return ", ".join(dict.fromkeys(f"`{print_head(rule)}`" for rule in rules))
-
-
-def _arguments(number: int) -> str:
-    return "no arguments" if number == 0 else "1 argument" if number == 1 else f"{number} arguments"
 
 
 def _is_value(argument: p.Argument) -> bool:

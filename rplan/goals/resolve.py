@@ -58,7 +58,7 @@ def _named(call: p.Call, scope: Scope, inside: tuple[str, ...]) -> c.Condition:
     scope.used[("condition", name)] = None
     definition = scope.conditions[name]
     if len(call.arguments) != len(definition.parameters):
-        takes, given = _count(len(definition.parameters)), len(call.arguments)
+        takes, given = arguments_said(len(definition.parameters)), len(call.arguments)
         scope.findings.add(
             "error", "wrong-arity", f"the condition `{name}` takes {takes}, here {_are(given)}", span,
             related=[Related("defined here", definition.span)],
@@ -306,7 +306,8 @@ def _call(call: p.Call, scope: Scope, wanted: Type | None, what: str) -> c.Term:
         if len(function.parameters) != len(call.arguments):
             scope.findings.add(
                 "error", "wrong-arity",
-                f"`{call.name}` takes {_count(len(function.parameters))}, here {_are(len(call.arguments))}", call.span,
+                f"`{call.name}` takes {arguments_said(len(function.parameters))}, here {_are(len(call.arguments))}",
+                call.span,
             )  # fmt: skip
         else:
             parameters = function.parameters
@@ -322,7 +323,8 @@ def _call(call: p.Call, scope: Scope, wanted: Type | None, what: str) -> c.Term:
     return c.Term("call", call.name, arguments, None, kind, call.span)
 
 
-def _count(number: int) -> str:
+def arguments_said(number: int) -> str:
+    """How many arguments, as messages say it."""
     return "no arguments" if number == 0 else "1 argument" if number == 1 else f"{number} arguments"
 
 

@@ -236,7 +236,7 @@ def test_a_scenario_is_found_beside_the_plan_by_name_or_alone(tmp_path: Path) ->
 
 @pytest.mark.rule("L24")
 def test_a_scenario_that_the_system_does_not_give_is_said_so(nook: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    from rplan.apps.commands import simulate as module
+    from rplan.apps import simulation as module
 
     def refuse(path: Path) -> None:
         raise PermissionError(13, "Permission denied")
