@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Protocol
 
-from rplan.runtime.encode import PerceptValue
+from rplan.runtime.encode import PerceptValue, encoder
 from rplan.runtime.tick import Decision
 from rplan.ways.reduce import Ways
 from rplan.ways.why import Reasons, Why
@@ -38,6 +38,17 @@ def why_not(
 
     wanted: output -> canonical text, None to leave it open. percepts: their values in that tick (`Tick.percepts`);
     without them a number is known only as far as the plan's comparisons say. Raises `WantedError` (a ValueError) for
-    an output or value that the plan does not have.
+    an output or value that the plan does not have, `PerceptError` (a ValueError) for a percept that is missing or has
+    no proper value, and ValueError for percepts that the decision did not see.
     """
+    if percepts is not None:
+        _same(compiled.ways, decision, percepts)
     return Changes(compiled.ways, wanted).why_not(decision.inputs, decision.registers, percepts)
+
+
+def _same(ways: Ways, decision: Decision, percepts: Mapping[str, PerceptValue]) -> None:
+    asked = ways.atoms[: ways.asking]
+    for atom, value, was in zip(asked, encoder(ways.goals, asked)(percepts), decision.inputs, strict=True):
+        if value != was:
+            said = f"{atom.text} was {str(was).lower()} in the decision, and is {str(value).lower()} in the percepts"
+            raise ValueError(f"the percepts are those of another tick: {said}")

@@ -59,6 +59,7 @@ class _Looking:
         self.offered = {pick: values[guard] for pick, guard in ways.on_offer.items()}
         given_up = [m.node for m in ways.layout.members[1:] if values[ways.given_up[m.number]]]
         self.because = dict(zip(given_up, (one.because for one in way.given_up), strict=True))
+        self.clash = clashing(wants(ways, 0, values)) if way.hole else ()
 
     def lost(self) -> tuple[Lost, ...]:
         found = []
@@ -78,15 +79,11 @@ class _Looking:
             outermost = self.nodes[outermost.parent]
         goal, part_of = label(node.goal), self._part_of(node)
         if outermost.parent < 0:
-            return Lost(goal, "hole", "no way is open", "", (), "", node.goal.span, node.goal.span)
+            return self._in_a_hole(node)
         parent = self.nodes[outermost.parent]
         match parent.goal:
-            case If(condition=condition, span=span):
-                literals = self.now.deciding(condition)
-                words = said(literals)
-                return Lost(
-                    goal, "condition", words, print_condition(condition), literals, part_of, node.goal.span, span
-                )
+            case If():
+                return self._by_condition(node, parent.goal, part_of)
             case Or(span=span):
                 because = self._instead(parent, outermost)
                 return Lost(goal, "alternative", because, "", (), part_of, node.goal.span, span)
@@ -94,6 +91,41 @@ class _Looking:
                 assert isinstance(parent.goal, PrioAnd)
                 because, by = self.because[outermost.number], self._against(outermost)
                 return Lost(goal, "conflict", because, "", (), part_of, node.goal.span, by)
+
+    def _by_condition(self, node: Node, asked: If, part_of: str) -> Lost:
+        literals = self.now.deciding(asked.condition)
+        because, condition = said(literals), print_condition(asked.condition)
+        return Lost(label(node.goal), "condition", because, condition, literals, part_of, node.goal.span, asked.span)
+
+    def _in_a_hole(self, node: Node) -> Lost:
+        """Blocked where a condition leaves it out in any case, else by what does not go together."""
+        asked, here = None, node
+        while here.parent >= 0:
+            above = self.nodes[here.parent]
+            if (
+                isinstance(above.goal, If)
+                and self.ways.layout.inside[above.number][not self._holds(above)] != here.number
+            ):
+                asked = above.goal
+            here = above
+        if asked is not None:
+            return self._by_condition(node, asked, "")
+        return Lost(label(node.goal), "hole", self._no_way(), "", (), "", node.goal.span, self._clash_of(node))
+
+    def _holds(self, node: Node) -> bool:
+        return self.values[self.ways.asked[node.number]]
+
+    def _no_way(self) -> str:
+        """What must be done and does not go together."""
+        if not self.clash:
+            return "no way is open: no alternative of what must be done goes together with the rest"
+        first, second = self.clash
+        return f"no way is open: {first.output} must be {first.value.text} and {second.value.text}"
+
+    def _clash_of(self, node: Node) -> Span:
+        """The act that the goal does not go together with; of one that has no part in it, the goal itself."""
+        others = [do.span for do in self.clash if do is not node.goal]
+        return others[0] if len(others) == 1 else node.goal.span
 
     def _part_of(self, node: Node) -> str:
         """The outermost rule around it that is not served or does nothing."""
@@ -146,6 +178,16 @@ class _Looking:
         below = number if isinstance(here, If) else asked
         every = (one for child in self.ways.layout.inside[number] for one in self._last_ifs(child, below))
         return [*dict.fromkeys(every)]
+
+
+def clashing(must: Sequence[Do]) -> tuple[Do, ...]:
+    """The first two acts that set one output to two values; none if all go together."""
+    first: dict[str, Do] = {}
+    for do in must:
+        other = first.setdefault(do.output, do)
+        if other.value.text != do.value.text:
+            return other, do
+    return ()
 
 
 def said(literals: Sequence[Literal]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from time import process_time
@@ -304,6 +305,22 @@ def test_a_decision_of_a_controller_that_runs_is_explained() -> None:
     controller.close()
 
 
+@pytest.mark.parametrize(
+    ("percepts", "says"),
+    [
+        ({}, "(anything-is-too-close): the plan reads it, and there is no value"),
+        ({"anything-is-too-close": True}, "(anything-is-too-close): the plan reads it, and there is no value"),
+        ({"(anything-is-too-close)": 1.0}, "(anything-is-too-close): true or false is wanted, not 1.0"),
+        ({"(anything-is-too-close)": True}, "(anything-is-too-close) was false in the decision, and is true"),
+    ],
+)
+def test_percepts_that_the_decision_did_not_see_are_clear_errors(percepts: dict[str, bool | float], says: str) -> None:
+    plan = compile_file(MAKE_ROOM)
+    decision = decider(plan).tick({"(anything-is-too-close)": False})
+    with pytest.raises(ValueError, match=re.escape(says)):
+        why_not(plan, decision, {"action": "(move-away-from-danger)"}, percepts)
+
+
 # --- plans alone ----------------------------------------------------------------------------------------
 
 
@@ -356,7 +373,7 @@ def test_a_hole_is_explained_as_well(tmp_path: Path) -> None:
     said = run("why", plan, "--given", "a").stdout
     assert "  no way is open: a hole\n" in said
     assert "  (a) is true\n" in said
-    assert "  (do x (off)), hole.rplan:1: no way is open" in said
+    assert "  (do x (off)), hole.rplan:1: no way is open: x must be (on) and (off)\n" in said
 
 
 def test_a_plan_in_which_nothing_lost_says_so(tmp_path: Path) -> None:

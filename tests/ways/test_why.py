@@ -108,7 +108,27 @@ def test_in_a_hole_everything_has_lost() -> None:
     _, found = asked(text, {"(a)": True})
     assert found.way.hole
     assert {one.reason for one in found.lost} == {"hole"}
+    assert {one.because for one in found.lost} == {"no way is open: x must be (on) and (off)"}
+    assert [one.by.column for one in found.lost] == [45, 65, 21]
     assert found.literals == (Literal("(a)", True),)
+
+
+def test_in_a_hole_what_a_condition_leaves_out_is_not_blamed() -> None:
+    text = "(goalem (and (do x on) (if (a) (do x off) (when (b) (do y on))) (or (do z a) (do z b))))"
+    _, found = asked(text, {"(a)": True, "(b)": True})
+    assert lost(found) == {
+        "(do x (on))": ("hole", "no way is open: x must be (on) and (off)"),
+        "(do x (off))": ("hole", "no way is open: x must be (on) and (off)"),
+        "(do y (on))": ("condition", "(a) is true"),
+        "(do z (a))": ("hole", "no way is open: x must be (on) and (off)"),
+        "(do z (b))": ("hole", "no way is open: x must be (on) and (off)"),
+    }
+
+
+def test_a_hole_among_alternatives_alone_says_so() -> None:
+    _, found = asked("(goalem (and (do x on) (or (do x off) (do x dim))))", {})
+    because = "no way is open: no alternative of what must be done goes together with the rest"
+    assert {one.because for one in found.lost} == {because}
 
 
 def test_a_goal_that_asks_for_nothing_is_satisfied() -> None:
