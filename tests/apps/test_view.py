@@ -372,6 +372,46 @@ def test_no_more_than_eight_pages_look() -> None:
     served(act)
 
 
+def test_a_connection_that_breaks_ends_nothing_and_the_next_one_gets_all() -> None:
+    async def act(viewer: Viewer) -> None:
+        async with page(viewer) as connection:
+            await heard(connection)
+            await connection.send(json.dumps({"do": "step", "ticks": 3}))
+            await heard(connection)
+            await connection.send(json.dumps({"do": "force", "percept": "there-is-a-goal", "value": True}))
+            await heard(connection)
+            connection.transport.abort()
+        async with page(viewer) as connection:
+            opened = await heard(connection)
+            assert (opened["open"]["ticks"], opened["state"]["forced"]) == (4, {"there-is-a-goal": True})
+            await connection.send(json.dumps({"do": "step", "ticks": 1}))
+            assert [row["t"] for row in (await heard(connection))["grow"]] == [400]
+
+    assert served(act).ticks == 5
+
+
+def test_only_the_end_of_the_server_is_told_as_its_end() -> None:
+    async def act(viewer: Viewer) -> None:
+        connections.append(await page(viewer))
+        await heard(connections[0])
+
+    async def told() -> int | None:
+        stop = asyncio.Event()
+
+        async def ready(viewer: Viewer) -> None:
+            await act(viewer)
+            stop.set()
+
+        await watch(session(), 0, ready, stop)
+        await connections[0].wait_closed()
+        return connections[0].close_code
+
+    connections: list[ClientConnection] = []
+    assert asyncio.run(told()) == 1001
+    script = (ROOT / "rplan" / "apps" / "viewer" / "live.js").read_text(encoding="utf-8")
+    assert "e.code === 1001 ? ended() : lost()" in script
+
+
 def test_addresses_differ_from_run_to_run() -> None:
     tokens: list[str] = []
 
@@ -441,8 +481,8 @@ def test_a_port_that_is_taken_is_said() -> None:
     assert result.exit_code == 2 and f"port {port} of 127.0.0.1" in result.stderr
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_ctrl_c_ends_it_cleanly(number: signal.Signals) -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_ctrl_c_or_a_closed_terminal_ends_it_cleanly(number: signal.Signals) -> None:
     process = subprocess.Popen(
         [sys.executable, "-u", "-c", "from rplan.apps.cli import main; main()", "view", str(FIND), "--paused"],
         stdout=subprocess.PIPE,

@@ -84,7 +84,7 @@ async def _watch(session: Session, port: int, record: Path | None) -> None:
         click.echo(f"watch it at {viewer.address}  (Ctrl-C ends)")
 
     stop = asyncio.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         asyncio.get_running_loop().add_signal_handler(number, stop.set)
     await watch(session, port, ready, stop)
 

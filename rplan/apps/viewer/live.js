@@ -36,7 +36,7 @@ window.live = (() => {
     off(viewer ? "connection lost, trying again" : "no connection to the simulation: it has ended, or too many pages look; trying again");
   }
   function off(words) {
-    if (viewer) { viewer.running(false); say(words, true); return; }
+    if (viewer) { viewer.running(false); say(words, true); document.getElementById("recording").hidden = true; return; }
     const fault = document.getElementById("fault"); fault.hidden = false; fault.textContent = words;
   }
   function hear(message, start, fail) {
