@@ -1,7 +1,7 @@
 """Which tick of which plan a question is about.
 
 Takes: a recording and a time, or a plan with percepts and a trace. Gives: `Moment`: the compiled plan, the atoms and
-registers of the tick, and what each output was before. Leaves alone: the answer; see commands/why.py and why_not.py.
+registers of the tick, and what each output was before. Leaves alone: the answer; see explaining.py.
 
 The plan of a recording is compiled again from the text that stands in its header, with the texts that it includes. Its
 ticks are looked at from the one that is asked about backwards, until each output is seen with another value.
@@ -11,12 +11,9 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
-
-import click
 
 from rplan.apps import talk
 from rplan.apps.commands.tick import Keys
@@ -31,7 +28,9 @@ from rplan.lang.units import BadNumberError, canonical_number, read_number
 from rplan.runtime.encode import PerceptError, PerceptValue, wrong_number
 from rplan.runtime.tick import Decider, Decision
 from rplan.runtime.trace import numbers, outputs_and_sent, texts
+from rplan.ways.reduce import Ways
 from rplan.ways.situations import atom_value, nothing
+from rplan.ways.why_not import Wanted
 from sim.chunks import MAGIC
 from sim.recording import RecordingError, latest, read
 
@@ -93,20 +92,6 @@ class Moment:
         return f"{Path(span.file).name}:{span.line}"
 
 
-def with_moment(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The argument and the options of a command that say which tick is meant; see `moment`."""
-    for add in (
-        click.option("--json", "as_json", is_flag=True, help="For programs."),
-        click.option(
-            "--trace", type=click.Path(path_type=Path), help="Ticks of a plan before, as `rplan tick` reads them."
-        ),
-        click.option("--given", metavar="PERCEPTS", help="Percepts of a tick of a plan: 'NAME, NAME=NUMBER'."),
-        click.option("--at", type=float, metavar="SECONDS", help="Which tick of a recording."),
-    ):
-        command = add(command)
-    return talk.with_libraries(command)
-
-
 def moment(about: str, at: float | None, given: str | None, trace: Path | None, *, as_json: bool = False) -> Moment:
     """The tick that is asked about; `InputError` where there is none, leaves with 1 where the plan is wrong."""
     if is_recording(Path(about)):
@@ -154,11 +139,12 @@ class _Before:
 
 
 def _recorded(path: Path, at: float | None) -> Moment:
-    compiled = _compiled_again(path, read(path).header.get("plan"))
+    begun = read(path)
+    compiled = _compiled_again(path, begun.header.get("plan"))
     ticks = _ticks_back(path, math.nan if at is None else at + LATE)
     found, period = next(ticks, None), compiled.goals.period
     if at is None or found is None or (at > found.time + period + LATE and at > _last(path) + period + LATE):
-        lasts = f"{path} lasts from 0 s to {_last(path):g} s"
+        lasts = f"{path} lasts from 0 s to {_last(path):g} s{', where it was cut short' if begun.cut_short else ''}"
         raise InputError(f"say when: --at SECONDS ({lasts})" if at is None else f"--at {at:g}: {lasts}")
     atoms, registers = _bits(path, found.plan, compiled)
     percepts = _percepts(path, found.plan, compiled, atoms)
@@ -379,6 +365,8 @@ def _given(text: str, compiled: Compiled) -> dict[str, PerceptValue]:
         name, equals, value = (word.strip() for word in part.rpartition("=")) if "=" in part else (part.strip(), "", "")
         if not name or name in values:
             raise InputError(f"--given: `{part.strip()}`: " + ("it is there twice" if name else "a percept is wanted"))
+        if " " in name and not name.startswith("("):
+            raise InputError(f"--given: `{part.strip()}`: a percept is wanted; several are separated by commas")
         function = compiled.goals.functions.get(name.removeprefix("(").removesuffix(")"))
         unit = function.type.unit if function is not None and function.type is not None else ""
         values[name] = _value(part.strip(), value, unit) if equals else True
@@ -397,6 +385,34 @@ def _value(part: str, text: str, unit: str) -> PerceptValue:
         hint = f" ({error.hint})" if error.hint else ""
         wrong = f"{error}{hint}" if text[:1].isdigit() else "true, false or a number is wanted"
         raise InputError(f"--given: `{part}`: {wrong}") from None
+
+
+def wishes(text: str, ways: Ways) -> Wanted:
+    """`OUTPUT=VALUE, OUTPUT=, (open OUTPUT)` as outputs and canonical texts."""
+    found: dict[str, str | None] = {}
+    for part in split(text):
+        name, equals, value = (one.strip() for one in part.partition("="))
+        if not equals and name.startswith("(open ") and name.endswith(")"):
+            name = name[len("(open ") : -1].strip()
+        elif not equals:
+            raise InputError(f"`{part.strip()}`: OUTPUT=VALUE is wanted, or OUTPUT= for one that stays open")
+        if name in found:
+            raise InputError(f"`{name}` is there twice")
+        found[name] = _canonical(value, ways.sets.get(name, {})) if value else None
+    if not found:
+        raise InputError("OUTPUT=VALUE is wanted")
+    return found
+
+
+def _canonical(value: str, known: dict[str, int]) -> str:
+    """The value as the plan has it: spaces once, numbers in SI, parentheses around a call."""
+    words = " ".join(value.split()).replace("( ", "(").replace(" )", ")")
+    if words not in known and f"({words})" in known:
+        return f"({words})"
+    try:
+        return canonical_number(*read_number(words))
+    except BadNumberError:
+        return words
 
 
 def split(text: str) -> list[str]:

@@ -1,6 +1,7 @@
 """How commands speak: diagnostics to stderr, results to stdout, `--json` for programs.
 
 Takes: diagnostics, plain values. Gives: text, and the exit code where a plan is wrong. Leaves alone: what is said.
+Imports the compiler and the libraries only where they are wanted, so that help and wrong options are answered at once.
 """
 
 from __future__ import annotations
@@ -8,15 +9,16 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
 from rplan.apps.files import InputError, unreadable
-from rplan.apps.libraries import Catalogue, LibraryError, catalogue
-from rplan.apps.wiring import compile_file
-from rplan.driver import Checks, Compiled, no_checks
 from rplan.lang.diagnostic import Diagnostic, PlanError, render
+
+if TYPE_CHECKING:
+    from rplan.apps.libraries import Catalogue
+    from rplan.driver import Checks, Compiled
 
 PLAN_IS_WRONG = 1
 MOST_NOTES = 8
@@ -28,7 +30,7 @@ def compiled(
     strict: bool = False,
     allow_holes: bool = False,
     as_json: bool = False,
-    checks: Checks = no_checks,
+    checks: Checks | None = None,
     verbose: bool = False,
     notes: int = 0,
 ) -> Compiled:
@@ -36,8 +38,12 @@ def compiled(
 
     notes: so many are shown, the others counted.
     """
+    from rplan.apps.wiring import compile_file
+    from rplan.driver import no_checks
+
+    asked = checks or no_checks
     try:
-        plan = compile_file(path, strict=strict, allow_holes=allow_holes, checks=checks, libraries=libraries())
+        plan = compile_file(path, strict=strict, allow_holes=allow_holes, checks=asked, libraries=libraries())
     except PlanError as error:
         wrong(error, path, as_json=as_json, verbose=verbose)
     except OSError as error:
@@ -54,6 +60,8 @@ def with_libraries(command: Callable[..., Any]) -> Callable[..., Any]:
     """The option `--library FILE.py` of a command; `libraries` gives what it names."""
 
     def keep(context: click.Context, _: click.Parameter, files: tuple[Path, ...]) -> None:
+        from rplan.apps.libraries import LibraryError, catalogue
+
         try:
             context.meta[KEY] = catalogue(files)
         except LibraryError as error:

@@ -101,19 +101,13 @@ class _Looking:
         """Blocked where a condition leaves it out in any case, else by what does not go together."""
         asked, here = None, node
         while here.parent >= 0:
-            above = self.nodes[here.parent]
-            if (
-                isinstance(above.goal, If)
-                and self.ways.layout.inside[above.number][not self._holds(above)] != here.number
-            ):
+            above, inside = self.nodes[here.parent], self.ways.layout.inside[here.parent]
+            if isinstance(above.goal, If) and here.number != inside[not self.values[self.ways.asked[above.number]]]:
                 asked = above.goal
             here = above
         if asked is not None:
             return self._by_condition(node, asked, "")
         return Lost(label(node.goal), "hole", self._no_way(), "", (), "", node.goal.span, self._clash_of(node))
-
-    def _holds(self, node: Node) -> bool:
-        return self.values[self.ways.asked[node.number]]
 
     def _no_way(self) -> str:
         """What must be done and does not go together."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from time import process_time
@@ -285,7 +287,23 @@ def test_a_recording_that_was_cut_short_is_explained_as_far_as_it_goes(tmp_path:
     last = cast(float, ticks[-1]["t"])
     assert 1 < last < 4.9
     assert told("why", path, "--at", str(last))["tick"] == len(ticks) - 1
-    assert f"lasts from 0 s to {last:g} s" in wrong("why", path, "--at", "4.9")
+    assert f"lasts from 0 s to {last:g} s, where it was cut short" in wrong("why", path, "--at", "4.9")
+
+
+# --- help ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("command", ["why", "why-not", "inspect"])
+@pytest.mark.parametrize("option", ["--help", "--nonsense"])
+def test_help_and_wrong_options_are_answered_without_the_compiler(command: str, option: str) -> None:
+    heavy = ("numpy", "z3", "lark", "behaviours.catalogue", "rplan.driver")
+    program = (
+        f"import sys\nfrom rplan.apps.cli import cli\n"
+        f"try: cli([{command!r}, {option!r}])\nexcept SystemExit: pass\n"
+        f"print('heavy:', [name for name in {heavy!r} if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert done.stdout.endswith("heavy: []\n")
 
 
 # --- a controller that runs ---------------------------------------------------------------------------
@@ -344,14 +362,62 @@ def test_a_trace_says_what_is_kept(guard: Path, tmp_path: Path) -> None:
     assert after.startswith(
         "guard at 0.2 s (tick 2)\n  action is follow: set by (ach company), guard.rplan:7; now, instead"
     )
-    assert "  (held-for 0.3s (seen)) was kept as 2 ticks before" in after
+    assert "  (held-for 0.3s (seen)) had 2 ticks counted before\n" in after
     assert run("why", guard, "--trace", trace).stdout.startswith("guard at 0.1 s (tick 1)")
     held = run("why-not", guard, "action=follow", "--trace", trace).stdout
     assert "no change of percepts would have made it happen" in held
-    assert "  (held-for 0.3s (seen)) kept as 2 ticks before, not 1 tick" in held
+    assert "  (held-for 0.3s (seen)) with 2 ticks counted before, not 1 tick\n" in held
     found = told("why-not", guard, "action=follow", "--trace", trace)
     assert found["past"] == [{"condition": "(held-for 0.3s (seen))", "was": 1, "becomes": 2}]
     assert "; since 0 s, instead of" not in after
+
+
+@pytest.mark.parametrize(
+    ("form", "says"),
+    [
+        ("(rose (seen))", "(seen) was true in the tick before"),
+        ("(not (delay false (seen)))", "(seen) was true in the tick before"),
+        ("(not (once (seen)))", "(once (seen)) was true before"),
+        ("(not (within 0.3s (seen)))", "(within 0.3s (seen)) had 2 ticks left before"),
+        ("(at-least 3 (seen))", "(at-least 3 (seen)) had 1 tick counted before"),
+    ],
+)
+def test_what_is_kept_is_said_as_each_form_of_memory_means_it(form: str, says: str, tmp_path: Path) -> None:
+    plan, trace = tmp_path / "kept.rplan", tmp_path / "trace.jsonl"
+    plan.write_text(f"(plan kept :period 0.1s) (goalem (when {form} (do x on)))")
+    trace.write_text('{"seen": true}\n')
+    assert f"  {says}\n" in run("why", plan, "--trace", trace, "--given", "").stdout
+
+
+def test_before_the_first_tick_nothing_is_said_to_have_been(tmp_path: Path) -> None:
+    plan = tmp_path / "first.rplan"
+    plan.write_text("(goalem (when (rose (seen)) (do x on)))")
+    assert "  (seen) counts as true before the first tick\n" in run("why", plan, "--given", "seen").stdout
+    other = run("why-not", plan, "x=on", "--given", "seen").stdout
+    assert "  (seen) false in the tick before, not true\n" in other
+
+
+def test_a_past_that_was_not_found_leaves_no_sentence_open(guard: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("rplan.ways.why_not.MOST_PASTS", 0)
+    said = run("why-not", guard, "action=follow", "--given", "distance=2").stdout
+    assert said.endswith("what would have had to be kept was not found\n")
+
+
+def test_what_stands_where_nothing_sets_it_is_said(tmp_path: Path) -> None:
+    plan, trace = tmp_path / "lamp.rplan", tmp_path / "trace.jsonl"
+    plan.write_text(
+        "(plan lamp) (defoutput light symbol :hold :initial off) (defoutput action symbol :idle rest)\n"
+        "(goalem (cond ((a) (do light on)) ((b) (and (do light off) (do action work)))))"
+    )
+    trace.write_text('{"a": true, "b": false}\n{"a": false, "b": true}\n')
+    said = run("why", plan, "--trace", trace, "--given", "").stdout
+    assert "  open: action (rest stands); now, instead of work\n" in said
+    assert "  open: light (off stands); since 0.1 s, instead of on\n" in said
+    held = run("why-not", plan, "light=off", "--trace", trace, "--given", "").stdout
+    assert "  light is off already, held from before; this tick does not set it\nlight = off: it would have" in held
+    assert "held" not in run("why-not", plan, "light=on", "--trace", trace, "--given", "").stdout
+    idle = run("why-not", plan, "action=rest", "--given", "b").stdout
+    assert idle.endswith("set by (goalem), lamp.rplan:2\n  action is rest: its idle value, since nothing sets it\n")
 
 
 def test_what_can_never_be_and_what_is_open_is_said(guard: Path, tmp_path: Path) -> None:
@@ -391,6 +457,10 @@ def test_a_plan_in_which_nothing_lost_says_so(tmp_path: Path) -> None:
         (("--given", "seen, seen"), "--given: `seen`: it is there twice"),
         (("--given", "seen, (seen)"), "is there twice, also as"),
         (("--given", "seen,, distance=1"), "--given: ``: a percept is wanted"),
+        (
+            ("--given", "seen distance=1"),
+            "--given: `seen distance=1`: a percept is wanted; several are separated by commas",
+        ),
         (("--given", "seen=maybe"), "--given: `seen=maybe`: true, false or a number is wanted"),
         (("--given", "distance=3x"), "`x` is not a unit"),
         (("--given", "distance=3s"), "--given: `distance=3s`: its unit is m, not s"),

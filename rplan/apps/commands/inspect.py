@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from rplan.apps import talk
-from rplan.apps.drawing.inspect import Inspection, inspect
-from rplan.apps.drawing.inspect_text import PARTS, text
 from rplan.apps.files import InputError, plan_file, unreadable
+
+if TYPE_CHECKING:
+    from rplan.apps.drawing.inspect import Inspection
 
 FILE = click.Path(dir_okay=False, path_type=Path)
 
@@ -37,6 +39,9 @@ def command(
     as_json: bool,
 ) -> None:
     """Show how PLAN decides. Without a part asked for it shows all of them."""
+    from rplan.apps.drawing.inspect import inspect
+    from rplan.apps.drawing.inspect_text import PARTS, text
+
     flags = {"table": table, "goals": goals, "circuit": circuit, "percepts": percepts}
     asked = [part for part, wanted in flags.items() if wanted]
     if svg is not None and len(asked) > 1:
