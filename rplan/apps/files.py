@@ -81,8 +81,9 @@ def scenario_file(given: str | None, plan: Path) -> Path:
     if len(found) == 1:
         return found[0]
     if not found:
-        coming = _coming_scenarios()
-        raise InputError(f"there is no scenario (*.yaml) beside {plan}; give one with --scenario, such as {coming}")
+        such = ", ".join(f"worlds/{one.stem}" for one in sorted(plan.parent.glob("worlds/*.yaml")))
+        such = such or _coming_scenarios()
+        raise InputError(f"there is no scenario (*.yaml) beside {plan}; give one with --scenario, such as {such}")
     raise InputError(f"there are several scenarios; say which with --scenario: {', '.join(s.name for s in found)}")
 
 

@@ -78,7 +78,7 @@ def write_parquet(recording: Recording, path: Path | str) -> int:
     try:
         import duckdb
     except ImportError as fault:
-        raise ImportError("Parquet needs duckdb: pip install duckdb", name="duckdb") from fault
+        raise ImportError("Parquet needs DuckDB: pip install 'rplan[data]', or write a .csv", name="duckdb") from fault
     path = Path(path)
     path.open("wb").close()  # a place that cannot be written is an OSError
     with tempfile.TemporaryDirectory() as folder, duckdb.connect() as database:

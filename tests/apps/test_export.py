@@ -134,7 +134,7 @@ def test_without_duckdb_it_says_how_to_get_it(recorded: Path, tmp_path: Path, mo
     monkeypatch.setattr(builtins, "__import__", without)
     result = export(recorded, "--parquet", str(tmp_path / "run.parquet"))
     assert result.exit_code == 2
-    assert result.stderr == "error: Parquet needs duckdb: pip install duckdb\n"
+    assert result.stderr == "error: Parquet needs DuckDB: pip install 'rplan[data]', or write a .csv\n"
     assert not (tmp_path / "run.parquet").exists()
 
 

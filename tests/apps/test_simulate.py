@@ -224,6 +224,10 @@ def test_a_scenario_is_found_beside_the_plan_by_name_or_alone(tmp_path: Path) ->
     none = simulate(str(plan), "--until", "1")
     assert (none.exit_code, none.stdout) == (2, "")
     assert "there is no scenario (*.yaml) beside" in none.stderr
+    (tmp_path / "worlds").mkdir()
+    (tmp_path / "worlds" / "far.yaml").write_text(SMALL)
+    assert simulate(str(plan), "--until", "1").stderr.endswith("give one with --scenario, such as worlds/far\n")
+    assert "in nook" in simulate(str(plan), "--until", "1", "--scenario", "worlds/far").stdout
     (tmp_path / "one.yaml").write_text(SMALL)
     assert "in nook" in simulate(str(plan), "--until", "1").stdout
     (tmp_path / "two.yaml").write_text(SMALL.replace("nook", "niche"))

@@ -82,7 +82,7 @@ def _check_targets(*targets: Path | None) -> None:
         if target is not None and not target.resolve().parent.is_dir():
             raise InputError(f"there is no folder {target.parent} to write {target.name} into")
     if targets[-1] is not None and find_spec("matplotlib") is None:
-        raise InputError("--plot needs matplotlib: pip install matplotlib")
+        raise InputError("--plot needs matplotlib: pip install 'rplan[plot]'")
 
 
 @contextmanager
