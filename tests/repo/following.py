@@ -220,8 +220,8 @@ def _run(command: list[str]) -> str:
         if not name.startswith(("PYTEST", "COV")) and name not in PLAIN
     }
     environment = kept | {"NO_COLOR": "1", "PYTHONPATH": str(ROOT), "COLUMNS": "80", "PYTHONDONTWRITEBYTECODE": "1"}
-    environment |= {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
-    done = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
+    environment |= {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1", "PYTHONUTF8": "1"}
+    done = subprocess.run(command, capture_output=True, encoding="utf-8", env=environment, check=False)
     if done.returncode not in (0, 1):
         raise PageError(f"{shlex.join(command)}: {done.stdout}{done.stderr}")
     return done.stdout + done.stderr
