@@ -315,19 +315,23 @@ def _alone(compiled: Compiled, given: str | None, trace: Path | None) -> Moment:
         percepts = _read(keys, text, line, f"{trace}: ")
         decision = _decided(decide, keys, percepts, line, f"{trace}: ")
         number += 1
-        before.add(number, number * period, texts(decision.sent))
+        before.add(number, _time(number, period), texts(decision.sent))
     if given is not None:
         values = json.dumps(_given(given, compiled), ensure_ascii=False)
         percepts = nothing(compiled.ways) | dict(_read(keys, values, 1, "--given: "))
         decision = _decided(decide, keys, percepts, 1, "--given: ")
         number += 1
-        before.add(number, number * period, texts(decision.sent))
+        before.add(number, _time(number, period), texts(decision.sent))
     if decision is None:
         raise InputError(f"{trace} has no tick")
     driving = {term.text: percepts[term.text] for term in compiled.goals.percepts(driving=True)}
-    return Moment(
-        compiled, number, number * period, decision.inputs, decision.registers, before.last, before.since, driving
-    )
+    time = _time(number, period)
+    return Moment(compiled, number, time, decision.inputs, decision.registers, before.last, before.since, driving)
+
+
+def _time(number: int, period: float) -> float:
+    """When a tick of a plan alone is [s], without what sums of floats add."""
+    return round(number * period, 9)
 
 
 def _lines(trace: Path) -> Iterator[tuple[int, str]]:

@@ -157,6 +157,16 @@ def test_the_circuit_says_what_every_tick_costs() -> None:
     assert re.search(r"^every tick +\d+ operations, the same whatever happens, every 0.1 s$", said, re.MULTILINE)
 
 
+def test_a_plan_that_asks_nothing_says_so() -> None:
+    said = text(inspect(compiled("(goalem (do x on))")), ["table", "circuit", "percepts"])
+    assert said.startswith("Decision table\n\n  always  x=(on)\n          by (goalem)\n\nCircuit\n")
+    assert "depth       0 gates one" in said
+    assert said.endswith("Percepts\n\nno percept is asked")
+    one = text(inspect(compiled("(goalem (when (not (a)) (do x on)))")), ["circuit", "percepts"])
+    assert "depth       1 gate one after another" in one and "every tick  1 operation, the same" in one
+    assert one.endswith("1 percept, by the number of rules that ask them:\n     1  (a)")
+
+
 def test_each_rule_says_which_percepts_it_reads() -> None:
     reads = {one.rule: (one.percepts, one.memory) for one in inspect(compiled(SMALL)).percepts}
     assert reads == {"(maint safe)": (("(near)",), ()), "(ach go)": (("(far)",), ("(held-for 0.2s (far))",))}

@@ -389,6 +389,13 @@ def test_what_is_kept_is_said_as_each_form_of_memory_means_it(form: str, says: s
     assert f"  {says}\n" in run("why", plan, "--trace", trace, "--given", "").stdout
 
 
+def test_times_of_a_plan_alone_are_round(guard: Path, tmp_path: Path) -> None:
+    trace = tmp_path / "trace.jsonl"
+    trace.write_text('{"distance": 2, "seen": true}\n' * 4)
+    found = told("why", guard, "--trace", trace)
+    assert found["t"] == 0.3 and found["since"]["action"]["time"] == 0.2
+
+
 def test_before_the_first_tick_nothing_is_said_to_have_been(tmp_path: Path) -> None:
     plan = tmp_path / "first.rplan"
     plan.write_text("(goalem (when (rose (seen)) (do x on)))")

@@ -31,12 +31,12 @@ def _columns(table: Table) -> Iterator[str]:
     width = len(str(len(table.conditions)))
     for number, name in enumerate(table.conditions, start=1):
         yield f"{number:>{width + 2}}  {name}"
-    yield ""
     if table.conditions:
+        yield ""
         yield "  " + " ".join(f"{number:>{width}}" for number in range(1, len(table.conditions) + 1))
     for row in table.rows:
         when = dict(row.when)
-        marks = " ".join(f"{MARKS[when.get(name)]:>{width}}" for name in table.conditions)
+        marks = " ".join(f"{MARKS[when.get(name)]:>{width}}" for name in table.conditions) or "always"
         blank = " " * len(marks)
         lines = [*_sets(row, len(marks) + 4), *_about(row, len(marks) + 4)]
         yield from (f"  {marks if n == 0 else blank}  {line}".rstrip() for n, line in enumerate(lines))
@@ -100,13 +100,17 @@ def circuit_text(inspection: Inspection) -> str:
     costs, circuit = inspection.stats, inspection.circuit
     kinds = [cell.op.value for cell in circuit.cells if cell.operands]
     counts = ", ".join(f"{kinds.count(kind)} {kind}" for kind in ("and", "or", "not") if kind in kinds)
+    tick = f"{_many(costs.operations, 'operation')}, the same whatever happens, every {inspection.period:g} s"
     rows = [
         ("inputs", f"{costs.inputs:,}"),
         ("outputs", f"{costs.outputs:,}"),
         ("gates", f"{costs.gates:,}" + (f" ({counts})" if counts else "")),
-        ("depth", f"{costs.depth:,} gates one after another"),
+        ("depth", f"{_many(costs.depth, 'gate')} one after another"),
         ("registers", f"{costs.registers:,}"),
-        ("every tick", f"{costs.operations:,} operations, the same whatever happens, every {inspection.period:g} s"),
+        (
+            "every tick",
+            f"{_many(costs.operations, 'operation')}, the same whatever happens, every {inspection.period:g} s",
+        ),
     ]
     lines = [f"{name:<12}{value}" for name, value in rows]
     lines += [f"{'register' if n == 0 else '':<12}{one.name}" for n, one in enumerate(circuit.registers)]
@@ -124,8 +128,14 @@ def percepts_text(inspection: Inspection) -> str:
         for one in reads.percepts:
             counts[one] = counts.get(one, 0) + 1
     often = sorted(counts.items(), key=lambda pair: -pair[1])
-    lines += ["", f"{len(counts)} percepts, by the number of rules that ask them:"]
-    return "\n".join([*lines, *(f"{count:>6}  {name}" for name, count in often)])
+    asked = (
+        f"{_many(len(counts), 'percept')}, by the number of rules that ask them:" if counts else "no percept is asked"
+    )
+    return "\n".join([*lines, *([""] if lines else []), asked, *(f"{count:>6}  {name}" for name, count in often)])
+
+
+def _many(count: int, name: str) -> str:
+    return f"{count:,} {name}{'' if count == 1 else 's'}"
 
 
 PARTS = {"table": table_text, "goals": goals_text, "circuit": circuit_text, "percepts": percepts_text}
