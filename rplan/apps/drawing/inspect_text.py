@@ -107,10 +107,7 @@ def circuit_text(inspection: Inspection) -> str:
         ("gates", f"{costs.gates:,}" + (f" ({counts})" if counts else "")),
         ("depth", f"{_many(costs.depth, 'gate')} one after another"),
         ("registers", f"{costs.registers:,}"),
-        (
-            "every tick",
-            f"{_many(costs.operations, 'operation')}, the same whatever happens, every {inspection.period:g} s",
-        ),
+        ("every tick", tick),
     ]
     lines = [f"{name:<12}{value}" for name, value in rows]
     lines += [f"{'register' if n == 0 else '':<12}{one.name}" for n, one in enumerate(circuit.registers)]
