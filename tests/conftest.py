@@ -30,9 +30,10 @@ SURROUNDINGS = (
 
 @pytest.fixture(scope="session", autouse=True)
 def plain_terminal() -> Iterator[None]:
-    """No colours, 80 columns."""
+    """No colours, 80 columns, and a cursor that can be moved."""
     with pytest.MonkeyPatch.context() as environment:
         for name in SURROUNDINGS:
             environment.delenv(name, raising=False)
         environment.setenv("COLUMNS", "80")
+        environment.setenv("TERM", "xterm")
         yield

@@ -112,7 +112,7 @@ def test_rows_of_another_library_file_are_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize("line", ["nonsense", "[]", "{}", '{"seed": "3"}', "\ufffd"])
 def test_a_line_that_is_no_row_is_told_with_its_number(tmp_path: Path, line: str) -> None:
     filled(tmp_path / "j.jsonl")
-    with (tmp_path / "j.jsonl").open("a") as file:
+    with (tmp_path / "j.jsonl").open("a", encoding="utf-8") as file:
         file.write(line + "\n")
     with pytest.raises(JournalError, match=r"j\.jsonl:3: no row of a sweep"):
         resumed(tmp_path / "j.jsonl")
