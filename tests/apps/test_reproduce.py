@@ -142,7 +142,7 @@ def test_both_presets_are_run_where_they_are_asked_for_and_a_miss_has_its_reason
     result = reproduce("--seeds", "1", "--preset", "both")
     assert result.exit_code == 1
     assert "T1 (modern), ticks: missed, since nothing moves" in result.stdout
-    assert "--preset modern --case 'short' --seed 0" in result.stdout.replace("\n", " ") or "modern" in result.stdout
+    assert "--preset modern --case 'short' --seed 0" in result.stdout.replace("\n", " ")
 
 
 def test_programs_get_the_findings_and_the_measures_of_every_episode() -> None:
@@ -218,7 +218,7 @@ def test_one_episode_is_played_on_a_page(tmp_path: Path) -> None:
     result = reproduce("T1", "--case", "short", "--seed", "3", "--replay", str(page))
     assert result.exit_code == 0
     assert result.stdout.startswith("T1 (paper), short, seed 3: not done: out of time at 2 s")
-    assert page.read_text(encoding="utf-8").startswith("<!doctype html>") or page.stat().st_size > 1000
+    assert page.read_text(encoding="utf-8").startswith("<!doctype html>")
 
 
 @pytest.mark.parametrize(

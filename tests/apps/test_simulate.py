@@ -271,7 +271,8 @@ def test_a_scenario_without_room_for_what_it_scatters_is_told(tmp_path: Path) ->
     path.write_text(SMALL + "scatter: [{kinds: [person], count: [50, 50], region: [-1, -1, 1, 1], min_gap: 1}]\n")
     result = simulate(FIND, "--scenario", str(path), "--until", "1")
     assert (result.exit_code, result.stdout) == (2, "")
-    assert "full.yaml" in result.stderr or "scatter" in result.stderr
+    said = "no room for 50 scattered things in [-1.0, -1.0, 1.0, 1.0]: make the region wider or min_gap smaller"
+    assert result.stderr == f"error: full.yaml, seed 0: scatter: {said}\n"
 
 
 def test_plans_of_an_installed_rplan_come_from_its_own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

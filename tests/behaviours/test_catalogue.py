@@ -1,6 +1,7 @@
 """The catalogue: what is offered is there, parameters reach what they name, and mistakes are told."""
 
 import math
+from dataclasses import is_dataclass
 
 import pytest
 
@@ -73,7 +74,23 @@ def test_words_and_parameters_are_documented_and_named_once(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_the_defaults_given_outright_make_the_same_library(name):
     values = {p.name: p.default for p in library(name).parameters}
-    built(name, **{name.replace("-", "_"): values})
+    assert settings_of(name, values) == settings_of(name, {})
+
+
+def test_what_is_not_the_default_makes_another_library():
+    assert settings_of("runaway", {"safety-radius": 0.4}) != settings_of("runaway", {})
+
+
+def settings_of(name, values):
+    """What estimators and competences of a library were set to, as text."""
+    (offer,), workshop = built(name, **{name.replace("-", "_"): values})
+    made = [*workshop.estimators, *offer.competences.values()]
+    held = [getattr(one, field, None) for one in made for field in (*getattr(one, "__slots__", ()), *vars_of(one))]
+    return [repr(one) for one in held if is_dataclass(one) and one.__dataclass_params__.frozen]
+
+
+def vars_of(thing):
+    return vars(thing) if hasattr(thing, "__dict__") else ()
 
 
 def test_a_parameter_reaches_what_it_names(standin):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from time import perf_counter
+from time import process_time
 
 import numpy as np
 import pytest
@@ -161,9 +161,9 @@ def test_specks_stay_unless_they_are_smaller_than_asked() -> None:
 def test_a_great_map_is_traced_in_little_time() -> None:
     rows, columns = np.mgrid[:2000, :2000]
     rooms = (rows % 250 < 4) | (columns % 300 < 4) | (np.hypot(rows % 500 - 250, columns % 400 - 200) < 40)
-    begin = perf_counter()
+    begin = process_time()
     rings = trace(rooms, 0.05, HERE)
-    assert perf_counter() - begin < 1.5
+    assert process_time() - begin < 1.5
     assert sum(map(len, rings)) < 2500
 
 

@@ -483,7 +483,7 @@ def test_files_that_are_broken_are_refused_in_one_line(tmp_path: Path, name: str
 def test_a_file_that_is_missing_or_no_file_is_refused(tmp_path: Path) -> None:
     assert refused(tmp_path / "gone.world") == "gone.world: there is no such file"
     assert "there is no such file" in refused(tmp_path)
-    assert "the file cannot be read" in refused(Path("a\0b.world")) or "no such file" in refused(Path("a\0b.world"))
+    assert refused(Path("a\0b.world")) == "a?b.world: there is no such file"
     assert "there is no format 'odd'" in refused(SAMPLES / "yard.world", format="odd")
 
 

@@ -63,10 +63,15 @@ def command(
         raise InputError("--until is not a number")
     path = plan_file(plan)
     compiled = talk.compiled(path, allow_holes=allow_holes, as_json=as_json)
-    world = world_in(scenario_file(scenario, path))
+    file = scenario_file(scenario, path)
+    world = world_in(file)
     _check_targets(record, replay, plot)
     with _recording(record, replay, plot) as recording:
-        run = _run(compiled, path, world, seed, until, recording)
+        try:
+            run = _run(compiled, path, world, seed, until, recording)
+        except ScenarioError as error:
+            told = [f"{file.name}, seed {seed}: {one.path}: {one.message}" for one in error.problems]
+            raise InputError("\n".join(told)) from None
         if recording is not None:
             _draw(recording, replay, plot, _line(run))
     if as_json:
@@ -104,8 +109,6 @@ def _run(compiled: Compiled, path: Path, world: World, seed: int, until: float |
             )
     except PlanError as error:
         talk.wrong(error, path)
-    except ScenarioError as error:
-        raise InputError("\n".join(map(str, error.problems))) from None
     except OSError as error:
         unreadable(record or path, error)
 
