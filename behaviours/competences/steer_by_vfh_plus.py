@@ -33,7 +33,8 @@ BACKWARDS = (0.5, 0.25, 0.12)
 @dataclass(frozen=True, slots=True)
 class SteerSettings:
     """left: where to turn when nothing is open, and which of two equally good directions is taken. ahead: None for VFH+
-    alone; else the way through what is seen is found first, and VFH+ goes along it.
+    alone; else the way through what is seen is found first, and VFH+ goes along it. round [rad]: to what lies further
+    aside it turns by the side `left`, and not by the shorter one.
     """
 
     choice: VfhPlusSettings = field(default_factory=VfhPlusSettings)
@@ -41,6 +42,7 @@ class SteerSettings:
     way_back: WayBackSettings = field(default_factory=WayBackSettings)
     left: bool = True
     ahead: LookAheadSettings | None = None
+    round: float = math.pi
 
 
 class SteerByVfhPlus:
@@ -104,8 +106,13 @@ class SteerByVfhPlus:
         if direction is None:
             return self._command(self._blocked(now, stamp)), Report(details={"direction": None})
         seen = Surrounds(self._near.points, self._near.sees_all)
-        drive = towards(wrap(direction - pose.theta), now, seen, pilot)
+        drive = towards(self._aside(direction - pose.theta), now, seen, pilot)
         return self._command(drive), Report(details={"direction": round(direction, 3)})
+
+    def _aside(self, direction: float) -> float:
+        """How far [rad] to turn to a direction, to the left positive."""
+        aside = wrap(direction)
+        return aside if abs(aside) <= self.settings.round else math.copysign(aside, 1.0 if self.settings.left else -1.0)
 
     def _looked_ahead(self, heading: float, stamp: float) -> float:
         """The direction [rad, map frame] in which the way through what is seen begins."""

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from behaviours.cores.corner import room
 from behaviours.cores.hough import Line
 from behaviours.interface import Floats, Vec2, wrap
 
@@ -28,7 +29,9 @@ class ContourSettings:
     line lie on it; leap: the place of contact may move by so much from scan to scan; shrink: a disc that fits nowhere
     is made smaller by this share until one fits, at the smallest `least`. back [rad]: before a disc turns the robot
     away from the contour by more, smaller ones are tried, since what the disc would roll on along may stand alone, and
-    it would not come back from there; two whole turns: never.
+    it would not come back from there; two whole turns: never. widest [m]: the disc is no larger than this, though the
+    stand-off be, so that openings that are twice as wide are gone into. beside [m]: half of the way between what stands
+    to the right and to the left, so little ahead of the robot or behind it, bounds the stand-off; 0: nothing does.
     """
 
     look_ahead: float = 2.5
@@ -39,6 +42,8 @@ class ContourSettings:
     shrink: float = 0.15
     least: float = 0.3
     back: float = 2.0 * math.tau
+    widest: float = math.inf
+    beside: float = 0.0
 
 
 NO_LENGTH = 1e-6
@@ -80,7 +85,9 @@ def anchored(points: Floats, contact: Vec2, leap: float) -> Vec2 | None:
 def rolled(points: Floats, contact: Vec2, stand_off: float, settings: ContourSettings) -> Rolled:
     """On along the contour of points (n, 2) [m], robot frame, from where the disc of radius stand_off [m] touched."""
     reach = np.hypot(points[:, 0], points[:, 1])
-    ahead, touched = _roll(points, reach, contact, stand_off, settings)
+    if settings.beside > 0.0:
+        stand_off = room(points, stand_off, settings.beside, settings.least)
+    ahead, touched = _roll(points, reach, contact, min(stand_off, settings.widest), settings)
     touches = contact if touched is None else _at(points, touched)
     beside = (np.arctan2(points[:, 1], points[:, 0]) - ahead) % math.tau <= BESIDE
     if not beside.any():

@@ -56,7 +56,7 @@ class WallOfLines:
         return self.mode == "wall"
 
     def update(self, reading: Reading, reports: Mapping[str, Report], channels: Channels) -> None:
-        if not self._around.fresh:
+        if not self._walls.fresh:
             return
         flip = 1.0 if self._walls.settings.right else -1.0
         points, seen = self._around.points * (1.0, flip), self._walls.line

@@ -38,17 +38,24 @@ class RoundSettings:
 
 @dataclass(frozen=True, slots=True)
 class WallsSettings:
-    """right: the wall is kept to the right. contour: roll along what stands there, and not along one line alone."""
+    """right: the wall is kept to the right. contour: roll along what stands there, and not along one line alone.
+
+    every [s]: at most so often a scan is looked at, and then alone the contour rolled along.
+    """
 
     follow: FollowSettings = field(default_factory=FollowSettings)
     hough: HoughSettings = field(default_factory=HoughSettings)
     rounds: RoundSettings = field(default_factory=RoundSettings)
     right: bool = False
     contour: ContourSettings | None = None
+    every: float = 0.0
 
 
 class Walls:
-    """line: of the tracked wall in the robot frame at the latest scan, None where it is not seen."""
+    """line: of the tracked wall in the robot frame at the scan looked at last, None where it is not seen.
+
+    fresh: a scan has been looked at since the last tick.
+    """
 
     def __init__(self, settings: WallsSettings, place: Localisation, around: Surroundings) -> None:
         self.settings = settings
@@ -57,6 +64,8 @@ class Walls:
         self._mirror = -1.0 if settings.right else 1.0
         self._wanted: float | None = None
         self.line: Line | None = None
+        self.fresh = False
+        self._looked = -math.inf
         self._round = _Round(settings.rounds)
         self._contour = None if settings.contour is None else _Contour(settings.contour, settings.follow.stand_off)
 
@@ -64,8 +73,11 @@ class Walls:
         self._round.go_on(self._place.pose)
         here = self._place.pose
         mirrored = here if self._mirror > 0 else Pose(here.x, -here.y, -here.theta)
-        wanted = self._look(mirrored) if self._around.fresh else None
-        if self._contour is not None and (rolling := self._contour.go_on(mirrored)) is not None:
+        self.fresh = self._around.fresh and reading.stamp - self._looked >= self.settings.every
+        wanted = self._look(mirrored) if self.fresh else None
+        self._looked = reading.stamp if self.fresh else self._looked
+        rolls = self._contour if self.fresh or not self.settings.every else None
+        if rolls is not None and (rolling := rolls.go_on(mirrored)) is not None:
             wanted = rolling
         if wanted is not None:
             self._wanted = wrap(self._mirror * wanted)
@@ -104,7 +116,7 @@ class Walls:
 
     def seen(self) -> list[float] | None:
         """The tracked wall as [x, y, x, y] in the robot frame [m], when a scan has just come."""
-        if self.line is None or not self._around.fresh:
+        if self.line is None or not self.fresh:
             return None
         return extent(self.line, self._around.points)
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from behaviours.competences.follow_heading import FollowHeading
+from behaviours.competences.follow_wall import ClearSettings
 from behaviours.competences.steer_by_vfh_plus import SteerByVfhPlus, SteerSettings
 from behaviours.competences.steer_clear import SteerClear
 from behaviours.cores.contour import ContourSettings
@@ -38,12 +39,16 @@ class _Pace:
     speed: float = 0.48
     most: float = 1.5
     stand_off: float = 1.0
-    look_ahead: float = 1.0
+    look_ahead: float = 0.0
     slip: float = 1.0
 
 
 BACK = math.radians(60)
 """Before the disc turns the robot away by more, smaller ones are tried: corridors are narrow."""
+EVERY = 0.08
+"""[s] From look to look at a scan: every third of those of X-RHex."""
+ROUND = math.radians(120)
+"""To what lies further aside the robot turns away from the wall."""
 
 _PRESET = Parameter(
     "preset",
@@ -58,7 +63,7 @@ _PACE = parameters(
     ("stand_off", "m", "Wanted distance to the wall."),
     ("speed", "m/s", "Greatest speed (that of X-RHex)."),
     ("most", "rad/s", "Greatest turn rate (chosen here)."),
-    ("look_ahead", "m", "With `modern`: the disc is swept so far (chosen here)."),
+    ("look_ahead", "m", "With `modern`: the disc is swept so far; 0: the stand-off (chosen here)."),
     ("slip", "", "Turn of the tracks per turn of the hull, 1.3 on tracks (chosen here)."),
 )
 _SOUGHT = parameters(
@@ -76,12 +81,20 @@ _MOTORS = parameters(
 NOTHING: Floats = np.zeros((0, 2))
 
 
-def _walls(values: Values, pace: _Pace, modern: bool) -> WallsSettings:
+def _look_ahead(pace: _Pace) -> float:
+    """[m]"""
+    return positive("look-ahead", pace.look_ahead or pace.stand_off)
+
+
+def _walls(values: Values, pace: _Pace, sought: SoughtSettings, modern: bool) -> WallsSettings:
     follow = FollowSettings(stand_off=positive("stand-off", pace.stand_off))
-    contour = ContourSettings(look_ahead=positive("look-ahead", pace.look_ahead), back=BACK)
-    contour = replace(contour, least=min(contour.least, follow.stand_off))
+    least = min(sought.hull_radius + sought.margin, follow.stand_off)
+    widest = max(least, sought.corner.door / 2.0)
+    contour = ContourSettings(
+        look_ahead=_look_ahead(pace), least=least, back=BACK, widest=widest, beside=sought.corner.beside
+    )
     right = chosen(_SIDE, values, "left", "right") == "right"
-    return WallsSettings(follow, right=right, contour=contour if modern else None)
+    return WallsSettings(follow, right=right, contour=contour if modern else None, every=EVERY)
 
 
 def _plus(values: Values, pace: _Pace, sought: SoughtSettings, right: bool) -> SteerSettings:
@@ -92,12 +105,15 @@ def _plus(values: Values, pace: _Pace, sought: SoughtSettings, right: bool) -> S
         cruise=pace.speed,
         max_turn_rate=positive("most", pace.most),
         margin=sought.margin,
+        roomy=ClearSettings().roomy,
+        tight=ClearSettings().tight,
         slip=positive("slip", pace.slip),
         hull=Hull(radius=positive("hull-radius", sought.hull_radius)),
         motors=motors,
     )
     clearance = sought.hull_radius + sought.margin
-    return SteerSettings(VfhPlusSettings(clearance=clearance, window=pace.stand_off + 1.0), pilot, left=right)
+    choice = VfhPlusSettings(clearance=clearance, window=_look_ahead(pace))
+    return SteerSettings(choice, pilot, left=right, round=ROUND)
 
 
 def _steer(
@@ -135,7 +151,7 @@ def _build(values: Values, workshop: Workshop) -> Offer:
     sought = replace(sought, corner=settings_of(CornerSettings(), _DOOR, values))
     positive("hull-radius", sought.hull_radius)
     place, around = localisation(workshop), surroundings(workshop)
-    walls = _shared(workshop, _walls(values, pace, modern), place, around)
+    walls = _shared(workshop, _walls(values, pace, sought, modern), place, around)
     wall = workshop.share(WallOfLines, lambda: WallOfLines(sought, walls, around))
     steer = _steer(values, workshop, pace, sought, walls.settings)
 

@@ -16,11 +16,13 @@ from sim.scenarios.importers.imported import Options
 HERE = Path(__file__).parent
 
 
+@pytest.mark.parametrize("follower", ["wall-by-ransac", "wall-by-hough"])
 @pytest.mark.parametrize("side", ["right", "left"])
-def test_either_hand_leads_to_the_goal(side: str) -> None:
+def test_either_hand_leads_to_the_goal_whoever_finds_the_wall(side: str, follower: str) -> None:
     text = (HERE / "maze.rplan").read_text(encoding="utf-8")
-    assert text.count(":side right") == 1
-    plan = compile_source(Source("maze.rplan", text.replace(":side right", f":side {side}")))
+    used = "(use wall-by-ransac :preset modern :side right"
+    assert text.count(used) == 1
+    plan = compile_source(Source("maze.rplan", text.replace(used, f"(use {follower} :preset modern :side {side}")))
     verdict = Episode(load(HERE / "maze.yaml"), 0, plan.goals.period).run(PlanBrain(plan), 150)
     assert verdict.done and not verdict.contacts
 

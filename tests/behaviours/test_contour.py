@@ -65,6 +65,24 @@ def test_a_gap_is_entered_where_the_disc_fits(mouth, way):
     assert (turned > 45) == (way == "in")
 
 
+def test_a_disc_that_is_kept_small_enters_a_gap_that_the_stand_off_would_pass_by():
+    before = [wall((-5, 1.5), (-1.4, 1.5)), wall((-1.4, 1.5), (-1.4, 9))]
+    behind = [wall((1.4, 1.5), (1.4, 9)), wall((1.4, 1.5), (9, 1.5))]
+    points = np.concatenate([*before, *behind])
+    turned = [
+        math.degrees(rolled(points, (-1.4, 1.5), 1.5, replace(SETTINGS, widest=widest)).direction)
+        for widest in (math.inf, 1.0)
+    ]
+    assert turned[0] < 45 < turned[1]
+
+
+def test_where_it_is_narrow_the_stand_off_is_half_of_the_room():
+    narrow = np.concatenate([wall((-5, 0.8), (9, 0.8)), wall((-5, -0.8), (9, -0.8))])
+    kept = replace(SETTINGS, widest=0.4, beside=0.25)
+    assert math.degrees(rolled(narrow, (0.0, 0.8), 1.5, kept).direction) == pytest.approx(0.0, abs=1.0)
+    assert math.degrees(rolled(narrow, (0.0, 0.8), 1.5, replace(kept, beside=0.0)).direction) < -20
+
+
 def test_what_touched_last_tells_which_contour_is_followed():
     points = np.concatenate([wall((-5, 2), (9, 2)), wall((-5, -2), (9, -2))])
     assert abs(degrees(points, (0.0, 2.0))) < 30

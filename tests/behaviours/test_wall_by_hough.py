@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
 
 from behaviours.catalogue import LIBRARIES
+from behaviours.competences.steer_by_vfh_plus import SteerByVfhPlus
+from behaviours.estimators.walls import Walls
 from behaviours.interface import Command, Drive, Odometry, Pose, Reading, Scan, Workshop
 from rplan.apps.wiring import PlanBrain, compile_source
 from rplan.lang.source import Source
@@ -72,14 +75,15 @@ def test_it_comes_to_the_stand_off(preset, y, heading):
 class Follower:
     """The library alone: scans in, commands out."""
 
-    def __init__(self, **values):
+    def __init__(self, period=0.1, **values):
+        self.period = period
         self.workshop = Workshop()
         self.offer = LIBRARIES["wall-by-hough"].build({"preset": "modern", **values}, self.workshop)
         self.tick = 0
 
     def give(self, ranges) -> Command:
-        scan = Scan(self.tick * 0.028, True, Pose(0.0, 0.0), BEARINGS, np.asarray(ranges, float), 0.02, 4.0)
-        reading = Reading(self.tick * 0.028, self.tick, Odometry(Pose(0.0, 0.0), 0.0, 0.0), lidar=scan)
+        scan = Scan(self.tick * self.period, True, Pose(0.0, 0.0), BEARINGS, np.asarray(ranges, float), 0.02, 4.0)
+        reading = Reading(self.tick * self.period, self.tick, Odometry(Pose(0.0, 0.0), 0.0, 0.0), lidar=scan)
         self.tick += 1
         for estimator in self.workshop.estimators:
             estimator.update(reading, {}, {})
@@ -146,6 +150,45 @@ def test_scans_that_say_nothing_give_finite_commands_and_a_lost_wall(ranges):
         command = follower.give(ranges)
         assert command.is_finite()
     assert not follower.asks("wall-found")
+
+
+def walls_of(follower):
+    return next(one for one in follower.workshop.estimators if isinstance(one, Walls))
+
+
+def test_of_frequent_scans_every_third_is_looked_at():
+    follower = Follower(period=0.028)
+    looked = []
+    for _ in range(9):
+        follower.give(RIGHT)
+        looked.append(walls_of(follower).fresh)
+    assert looked == [True, False, False] * 3
+
+
+def test_the_disc_is_no_smaller_than_the_hull_needs_and_enters_what_is_wider_than_the_door():
+    contour = walls_of(Follower(**{"hull-radius": 0.3, "door": 0.3})).settings.contour
+    assert contour.least == contour.widest == pytest.approx(0.36)
+    assert walls_of(Follower(door=1.2)).settings.contour.widest == pytest.approx(0.6)
+
+
+@dataclass
+class Open:
+    """Nothing stands anywhere, and the robot is where it began."""
+
+    points = np.zeros((0, 2))
+    sees_all = True
+    pose = Pose(0.0, 0.0)
+
+
+@pytest.mark.parametrize(("aside", "turn"), [(-150, 1.0), (-100, -1.0), (100, 1.0), (150, 1.0)])
+def test_to_what_lies_behind_it_turns_away_from_the_wall(aside, turn):
+    """Else a robot in a dead end would turn to and fro, as the shorter way changes."""
+    follower, here = Follower(), Open()
+    settings = follower.offer.competences["follow-wall"]._steer.settings
+    steer = SteerByVfhPlus(settings, here, here, lambda: True, lambda: here.points)
+    reading = Reading(0.0, 0, Odometry(Pose(0.0, 0.0), 0.0, 0.0))
+    command, _ = steer.step(reading, {"heading": math.radians(aside)})
+    assert math.copysign(1.0, command.drive.turn_rate) == turn
 
 
 def test_parameters_that_make_no_sense_are_refused():
