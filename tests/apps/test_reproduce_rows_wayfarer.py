@@ -165,7 +165,7 @@ def drive(*places: tuple[float, float]) -> list[Moment]:
     return [moment(10.0 * k, Pose(*place)) for k, place in enumerate(places)]
 
 
-BEFORE, IN, OUT = (-6.0, -1.5), (3.0, -1.5), (-1.5, -3.0)
+BEFORE, IN, OUT, BEHIND = (-6.0, -1.5), (3.0, -1.5), (-1.5, -3.0), (3.5, -4.5)
 
 
 @pytest.mark.parametrize(
@@ -177,6 +177,9 @@ BEFORE, IN, OUT = (-6.0, -1.5), (3.0, -1.5), (-1.5, -3.0)
         ([BEFORE, IN, OUT, IN, OUT, IN], None, "trapped", 3),
         ([(-6.5, -1.5), OUT, (-1.5, -7.0), IN], ("on", 20.0), "passed", 0),
         ([(-6.5, -1.5), (-6.4, -1.5)], None, "trapped", 0),
+        ([BEFORE, IN, OUT, BEHIND, OUT, IN], ("on", 30.0), "out", 1),
+        ([BEFORE, OUT, (2.0, -4.5), BEHIND], ("on", 30.0), "passed", 0),
+        ([BEFORE, OUT, (2.0, -4.5), OUT], None, "trapped", 0),
     ],
 )
 def test_an_alley_is_left_on_or_back_or_passed_or_it_is_a_trap(
@@ -212,6 +215,7 @@ def test_how_alleys_are_left_is_told_apart() -> None:
         ("modern", w3.WITHOUT, 20, "met", ""),
         ("modern", w3.WITH, 0, "met", ""),
         ("modern", w3.WITH, 1, "missed", w3.STILL),
+        ("modern", w3.NEARER, 1, "missed", w3.STILL),
     ],
 )
 def test_a_third_is_trapped_without_the_path_and_none_with_it(
@@ -222,8 +226,9 @@ def test_a_third_is_trapped_without_the_path_and_none_with_it(
 
 
 def test_there_are_twenty_four_alleys_unless_fewer_are_asked_for() -> None:
-    assert [len(case.seeds) for case in w3.cases(20)] == [24, 24]
-    assert [len(case.seeds) for case in w3.cases(3)] == [3, 3]
+    assert [len(case.seeds) for case in w3.cases(20)] == [24, 96, 24, 24]
+    assert [len(case.seeds) for case in w3.cases(3)] == [3, 3, 3, 3]
+    assert [len(w3.ROW.cases_with(preset, 3)) for preset in ("paper", "modern")] == [2, 3]
     assert w3.cases(1)[1].changes == w3.FORGOTTEN
 
 
@@ -232,7 +237,7 @@ def test_there_are_twenty_four_alleys_unless_fewer_are_asked_for() -> None:
 WORLDS = plans_folder() / "perimeter" / "worlds"
 
 
-@pytest.mark.parametrize("name", ["auxiliary", "bare", "headquarters", "alley"])
+@pytest.mark.parametrize("name", ["auxiliary", "bare", "headquarters", "alley", "alley_corner"])
 def test_the_robot_starts_one_to_two_metres_from_the_wall_to_its_left(name: str) -> None:
     scenario = load(WORLDS / f"{name}.yaml")
     for seed in range(8):
@@ -242,10 +247,12 @@ def test_the_robot_starts_one_to_two_metres_from_the_wall_to_its_left(name: str)
         assert 1 <= gap <= 2 and abs(layout.start.theta) < 0.15
 
 
-def test_twenty_four_alleys_differ_within_their_bounds() -> None:
-    scenario = load(WORLDS / "alley.yaml")
+@pytest.mark.parametrize("name", ["alley", "alley_corner"])
+def test_twenty_four_alleys_differ_within_their_bounds(name: str) -> None:
+    scenario = load(WORLDS / f"{name}.yaml")
     things = [lay_out(scenario, chance(seed).layout).things for seed in range(24)]
-    mouths, depths = [-11 - right.pose.y for _, right, _ in things], [back.pose.x - 0.2 for *_, back in things]
+    mouths = [-right.pose.y - max(y for _, y in right.outline.vertices) for _, right, _ in things]
+    depths = [back.pose.x - 0.2 for *_, back in things]
     assert 2.4 <= min(mouths) < 2.6 and 3.0 < max(mouths) <= 3.2
     assert 3.5 <= min(depths) < 4.0 and 8.5 < max(depths) <= 9.0
 

@@ -162,7 +162,7 @@ def test_in_a_long_and_narrow_alley_the_robot_waits_until_its_path_is_forgotten(
 
 def test_out_of_an_alley_the_robot_does_not_go_in_again_beside_its_path():
     plan = compile_file(PLANS / "perimeter" / "perimeter.rplan")
-    seen = watch(plan, load(PLANS / "perimeter" / "worlds" / "alley.yaml"), 106)
+    seen = watch(plan, load(PLANS / "perimeter" / "worlds" / "alley_corner.yaml"), 106)
     inside = [moment.pose.x > 0.3 for moment in seen.moments if moment.time < 75.0]
     assert sum(now and not last for last, now in pairwise(inside)) == 1
     assert min(moment.pose.y for moment in seen.moments if moment.time < 75.0) < -6.0, "on along the wall"
