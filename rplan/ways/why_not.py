@@ -10,6 +10,7 @@ are exact, assumptions kept. Of changes that are as small the one counts that ha
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -269,11 +270,12 @@ class _Search:
         return float(value_of(value))
 
     def _candidates(self, text: str) -> list[Fraction]:
-        """What it is compared with, values between and beyond; the nearest to what it was first, or to zero."""
+        """What it is compared with, and values beside, between and beyond; the nearest to what it was first, or to zero."""
         ordered = sorted({Fraction(0), *bounds(self.ways, text)})
         between = [(a + b) / 2 for a, b in pairwise(ordered)]
         centre = Fraction(0) if self.values is None else exact(float(self.values[text]))
-        every = {*ordered, *between, ordered[0] - 1, ordered[-1] + 1}
+        beside = [value for bound in ordered if bound for value in _beside(bound)]
+        every = {*ordered, *beside, *between, ordered[0] - 1, ordered[-1] + 1}
         return sorted(every, key=lambda value: (abs(value - centre), -value))
 
     # --- what is kept ---
@@ -333,6 +335,12 @@ class _Search:
     def _guard(self, register: int) -> int:
         node: Node = ("register", register, register)
         return self.ways.guards.index[node]
+
+
+def _beside(bound: Fraction) -> tuple[Fraction, Fraction]:
+    """The numbers of two digits next below and next above."""
+    step = Fraction(10) ** (math.floor(math.log10(abs(bound))) - 1)
+    return (math.ceil(bound / step) - 1) * step, (math.floor(bound / step) + 1) * step
 
 
 class _TooHardError(Exception):

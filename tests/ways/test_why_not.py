@@ -47,8 +47,30 @@ def test_a_number_counts_once_whatever_comparisons_ask_of_it() -> None:
     assert [one.percept for one in found.changes] == ["(d)"]
     (change,) = found.changes
     assert change.was == 3.0
-    assert change.becomes == 0.75
+    assert change.becomes == 0.9
     assert change.comparisons == (Literal("(< (d) 2m)", True), Literal("(< (d) 1m)", True))
+
+
+@pytest.mark.parametrize(
+    ("comparison", "was", "becomes"),
+    [
+        ("(> d 0.95m)", 0.6, 0.96),
+        ("(> d 0.95m)", 0.95, 0.96),
+        ("(< d 0.4m)", 0.917, 0.39),
+        ("(> d 30m)", 0.0, 31.0),
+        ("(< d -0.5m)", 0.0, -0.51),
+        ("(> d 0.5236m)", 0.0, 0.53),
+        ("(and (> d 0.95m) (< d 0.955m))", 0.0, 0.9525),
+        ("(<= d 1m)", 2.0, 1.0),
+        ("(> d 0m)", 0.0, 1.0),
+    ],
+)
+def test_the_number_that_would_do_is_a_round_one_near_to_what_it_was(
+    comparison: str, was: float, becomes: float
+) -> None:
+    _, found = asked(f"{LENGTHS}(goalem (when {comparison} (do x on)))", {"x": "on"}, {"(d)": was})
+    (change,) = found.changes
+    assert change.becomes == becomes
 
 
 def test_where_numbers_are_not_known_only_what_comparisons_said_counts() -> None:
