@@ -270,7 +270,7 @@ class _Search:
         return float(value_of(value))
 
     def _candidates(self, text: str) -> list[Fraction]:
-        """What it is compared with, and values beside, between and beyond; the nearest to what it was first, or to zero."""
+        """What it is compared with, values beside, between and beyond; the nearest to what it was first, or to zero."""
         ordered = sorted({Fraction(0), *bounds(self.ways, text)})
         between = [(a + b) / 2 for a, b in pairwise(ordered)]
         centre = Fraction(0) if self.values is None else exact(float(self.values[text]))
