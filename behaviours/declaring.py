@@ -1,21 +1,33 @@
 """What libraries are declared with: words, parameters from settings, and settings from what a plan gives.
 
-Takes: settings classes, and the values of a plan. Gives: `Function`s and `Parameter`s, and settings with values put in.
+Takes: settings classes, and the values of a plan. Gives: `Function`s and `Parameter`s, settings with values put in, and
+estimators that libraries agree on.
 Leaves alone: which libraries there are (`catalogue.py`, `libraries/`).
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from behaviours.interface import Function, Parameter, Values
+from behaviours.interface import Estimator, Function, Parameter, Values, Workshop
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
 Settings = TypeVar("Settings", bound="DataclassInstance")
+
+
+class WithSettings(Estimator, Protocol):
+    """An estimator that says what it was made with."""
+
+    @property
+    def settings(self) -> object: ...
+
+
+Agreed = TypeVar("Agreed", bound=WithSettings)
 Row = tuple[str, str, str]
 """field of the settings, SI unit, doc"""
 
@@ -71,3 +83,27 @@ def positive(name: str, value: float) -> float:
 def number(name: str, unit: str, doc: str) -> Function:
     """A percept or value that is a number; unit: of SI."""
     return Function(name, "number", doc, unit=unit)
+
+
+def preset(doc: str) -> Parameter:
+    """The parameter that sets all switches of a library, `paper` or `modern`."""
+    return Parameter("preset", "symbol", "", "paper", doc)
+
+
+def switch(name: str, doc: str) -> Parameter:
+    """A part of a library that the preset turns on and off, unless the plan says it."""
+    return Parameter(name, "symbol", "", "preset", f"{doc} `on`, `off`, or as the `preset` has it.")
+
+
+def is_on(values: Values, preset: Parameter, switch: Parameter) -> bool:
+    """Whether a switch is on, by itself or by the preset of its library."""
+    modern = chosen(preset, values, "paper", "modern") == "modern"
+    return {"preset": modern, "on": True, "off": False}[chosen(switch, values, "preset", "on", "off")]
+
+
+def agreed(workshop: Workshop, kind: type[Agreed], make: Callable[[], Agreed], settings: object, name: str) -> Agreed:
+    """The shared estimator with these settings. Raises ValueError where another library made it with others already."""
+    shared = workshop.share(kind, make)
+    if shared.settings != settings:
+        raise ValueError(f"use {name} before the libraries that build on it: they took it with other parameters")
+    return shared
