@@ -23,6 +23,7 @@ from sim.raycast import Rings, Scene
 from sim.scenarios.format import loads
 from sim.scenarios.grid import trace
 from sim.scenarios.scenario import Scenario, ThingSpec
+from sim.sensors.build import LidarBuild
 from sim.world import World
 
 ROUND = Command(Drive(0.5, 0.25))
@@ -56,6 +57,7 @@ def room(discs: int, moving: bool = False) -> Scenario:
 def with_beams(scenario: Scenario, beams: int) -> Scenario:
     """The same with so many beams; 0: without a lidar."""
     lidar = scenario.robot.sensors[0]
+    assert isinstance(lidar.build, LidarBuild)
     sensors = (replace(lidar, build=replace(lidar.build, beams=beams)),) if beams else ()
     return replace(scenario, robot=replace(scenario.robot, sensors=sensors))
 
@@ -90,9 +92,9 @@ def grid_map(cells: int) -> tuple[Scenario, float, int]:
     begin = time.perf_counter()
     rings = Rings(trace(occupied, 0.05, Pose(0.0, 0.0)))
     thing = ThingSpec("outline", rings, 2.0, (0.0, 0.0))
-    at = (middle * 0.05, middle * 0.05 - 2.0) if cells * 0.05 > 20 else (1.0, 1.0)
+    start = (middle * 0.05, middle * 0.05 - 2.0) if cells * 0.05 > 20 else (1.0, 1.0)
     base = room(10)
-    scenario = replace(base, things=(thing,), robot=replace(base.robot, start=at))
+    scenario = replace(base, things=(thing,), robot=replace(base.robot, start=start))
     World(with_beams(scenario, 360), 0).sense()
     return scenario, time.perf_counter() - begin, sum(map(len, rings.rings))
 
@@ -102,7 +104,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--numpy", action="store_true", help="without the compiled caster")
     if parser.parse_args().numpy:
-        world.Scene = partial(Scene, loops=lambda: None)
+        vars(world)["Scene"] = partial(Scene, loops=lambda: None)
     print("one robot among 50 discs, 0.1 s steps, without a brain: times real time")
     scene = room(50)
     for beams in (360, 24, 0):

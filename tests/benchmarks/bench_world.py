@@ -13,7 +13,7 @@ from behaviours.interface import Command, Drive, Pose
 from sim.episode import Episode
 from sim.raycast import Circle, Outline, Rays, Scene, box, cast
 from sim.scenarios.format import load
-from sim.world import TICK, World
+from sim.world import PERIOD, World
 
 LOT = load(Path(__file__).parents[2] / "plans" / "find_and_fetch" / "parking_lot.yaml")
 ROUND = Command(Drive(0.2, 0.15))
@@ -49,10 +49,10 @@ def main() -> None:
     judged = microseconds(tick, 600)
     shown = microseconds(whole.snapshot, 600)
     print(f"tick: step {pure:.0f} us, with sensing {both:.0f} us, with the judge {judged:.0f} us")
-    print(f"      {TICK * 1e6 / judged:.0f} times real time; a snapshot {shown:.0f} us more")
+    print(f"      {PERIOD * 1e6 / judged:.0f} times real time; a snapshot {shown:.0f} us more")
     chance = np.random.default_rng(0)
-    outlines: list[Outline] = [box(2.0, 0.2)] * 200 + [Circle(0.3)] * 60
-    poses = [Pose(*chance.uniform(-20, 20, 2), chance.uniform(-3, 3)) for _ in outlines]
+    outlines: list[Outline] = [*[box(2.0, 0.2)] * 200, *[Circle(0.3)] * 60]
+    poses = [Pose(*chance.uniform((-20, -20, -3), (20, 20, 3)).tolist()) for _ in outlines]
     scene, zeros = Scene(outlines, poses, [1.0] * 260), np.zeros(360)
     rays = Rays(zeros, zeros, np.linspace(0, 6.28, 360), zeros)
     print(f"cast: 360 rays, 260 things: {microseconds(lambda: cast(rays, 20.0, scene), 100):.0f} us")

@@ -76,7 +76,7 @@ ODD_WORDS = tuple(
 def sources() -> list[Path]:
     """Every file that can be imported, the samples first."""
     folder = Path(os.environ.get("RPLAN_DATA", SAMPLES))
-    patterns = ("stage/*.world", "stage/*.inc", "stage/bitmaps/*.png", "ros_maps/*.*", "mazes/*.txt", "*barn/*.json")
+    patterns = ["stage/*.world", "stage/*.inc", "stage/bitmaps/*.png", "ros_maps/*.*", "mazes/*.txt", "*barn/*.json"]
     patterns += ("mit_wall_follower/*.json", "mit_wall_follower/maps/*.*", "laser_logs/*.gz")
     return sorted(SAMPLES.iterdir()) + [path for pattern in patterns for path in sorted(folder.glob(pattern))]
 

@@ -150,8 +150,7 @@ def mazes(directory: Path, followers: list[str], minutes: float, seed: int, side
     """A line for each maze and follower."""
     for path in sorted(directory.glob("*.txt")) if directory.is_dir() else [directory]:
         for follower in followers:
-            stand_off, more = (0.65, "") if follower == FOLLOWERS[0] else (0.5, ":look-ahead 0.5m")
-            compiled = plan(follower, "28ms", side, stand_off, 0.45, f":door 0.3m {more}")
+            compiled = plan(follower, "28ms", side, 0.65, 0.45, ":door 0.3m")
             yield f"{follower:15} {hour(path.stem, enlarged(path), compiled, minutes, seed)}"
 
 
