@@ -18,20 +18,21 @@ from pathlib import Path
 from viewer.chromium import Tab, chromium
 from viewer.frames import draws
 from viewer.inspected import PLANS, inspects, viewed
-from viewer.live import viewing, watched
+from viewer.live import breaks, viewing, watched
+from viewer.others import others
 from viewer.pictures import everywhere, moments, opened
-from viewer.points import Points, recorded
+from viewer.points import ROOT, Points, recorded
 from viewer.replayed import replay
 
 FETCH = "plans/find_and_fetch"
 SEED, LONG = 3, 12
 """Seeds of the run that is looked at, and of one of more than ten minutes."""
-PARTS = ("replay", "frames", "live", "inspect")
+PARTS = ("replay", "frames", "others", "live", "inspect")
 
 
 async def look(parts: list[str], work: Path, shots: Path | None, points: Points) -> None:
     """Try all parts in one browser, each in a tab of its own."""
-    tries = {"replay": _replayed, "frames": _drawn, "live": _live, "inspect": _inspected}
+    tries = {"replay": _replayed, "frames": _drawn, "others": _others, "live": _live, "inspect": _inspected}
     async with chromium() as browser:
         for part in parts:
             async with browser.tab() as tab:
@@ -50,11 +51,17 @@ async def _drawn(tab: Tab, work: Path, _: Path | None, points: Points) -> None:
     await draws(tab, points, page)
 
 
-async def _live(tab: Tab, _: Path, shots: Path | None, points: Points) -> None:
-    async with viewing(FETCH, "--seed", str(SEED), "--paused") as address:
+async def _others(tab: Tab, work: Path, _: Path | None, points: Points) -> None:
+    await others(tab, points, work)
+
+
+async def _live(tab: Tab, work: Path, shots: Path | None, points: Points) -> None:
+    run = work / "watched.mcap"
+    async with viewing(FETCH, "--seed", str(SEED), "--paused", "--record", str(run)) as address:
         await watched(tab, points, address)
         if shots:
             await everywhere(tab, shots, "live")
+    await breaks(tab, points, ROOT / FETCH)
 
 
 async def _inspected(tab: Tab, work: Path, shots: Path | None, points: Points) -> None:

@@ -11,15 +11,23 @@ import json
 import re
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 from urllib.parse import urlsplit
 
 from viewer.chromium import Tab, line_with
 from viewer.points import ROOT, RPLAN, Points
 from viewer.replayed import PIXELS, now, settles
 from websockets.asyncio.client import connect
+from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import InvalidStatus
 from websockets.typing import Origin
+
+from rplan.apps.simulation import load_world
+from rplan.apps.viewer import server
+from rplan.apps.viewer.session import Session
+from rplan.apps.wiring import compile_file
 
 TICKS = "viewer.ticks"
 SAID = "document.getElementById('said').textContent"
@@ -47,6 +55,8 @@ async def viewing(*arguments: str) -> AsyncIterator[str]:
 async def watched(tab: Tab, points: Points, address: str) -> None:
     """All of it, on a page that waits."""
     await tab.open(address)
+    sign = await tab.eval("document.getElementById('recording').textContent")
+    points.add("h", "says that it records, and where to", sign == "recording watched.mcap", sign)
     await runs(tab, points)
     await meddles(tab, points)
     others = [one for one in tab.asked if urlsplit(one).hostname != "127.0.0.1"]
@@ -110,6 +120,36 @@ async def _press(tab: Tab, row: str, button: str) -> None:
     await tab.eval(f"document.querySelectorAll('#live .row')[{ROW.format(row)}].id = 'wanted'")
     await tab.click(f"#wanted {button}")
     await tab.eval("document.getElementById('wanted').id = ''")
+
+
+async def breaks(tab: Tab, points: Points, plan: Path) -> None:
+    """A connection that is lost is told and made again; the end of the simulation is told as its end."""
+    stop, connections = asyncio.Event(), list[ServerConnection]()
+
+    class Cutting(server.Viewer):
+        async def attend(self, connection: ServerConnection) -> None:
+            connections.append(connection)
+            await super().attend(connection)
+
+    async def ready(viewer: server.Viewer) -> None:
+        await tab.open(viewer.address)
+        await tab.click("#ahead")
+        await tab.until(f"{TICKS} === 2")
+        await tab.eval(f"new MutationObserver(() => sessionStorage.said = {SAID})"
+                       ".observe(document.getElementById('said'), {childList: true})")  # fmt: skip
+        connections[0].transport.abort()
+        again = await tab.until(
+            "!!sessionStorage.said && !document.documentElement.dataset.lost && !!window.viewer", 10
+        )
+        said, ticks = await tab.eval("sessionStorage.said"), await tab.eval(TICKS)
+        points.add("h", "a lost connection is told and made again", again and ticks == 2, f"{said}; {ticks} ticks")
+        stop.set()
+
+    session = Session(compile_file(plan / f"{plan.name}.rplan"), load_world(plan / "parking_lot.yaml"), 0)
+    with patch.object(server, "Viewer", Cutting):
+        await server.watch(session, 0, ready, stop)
+    ended = await tab.until(f"{SAID} === 'the simulation has ended'", 5)
+    points.add("h", "the end of the simulation is told", ended, await tab.eval(SAID))
 
 
 def _pair(numbers: list[float]) -> str:
