@@ -10,6 +10,7 @@ import sys
 from importlib import import_module
 from io import TextIOWrapper
 from keyword import iskeyword
+from traceback import walk_tb
 
 import click
 
@@ -40,6 +41,8 @@ COMMANDS = {
 }
 USED_WRONGLY = 2
 INTERNAL = 70
+OF_A_LIBRARY = "rplan_library_"
+"""Begins the names of modules that `--library FILE` loads."""
 
 
 class Commands(click.Group):
@@ -80,8 +83,9 @@ def cli() -> None:
 def main() -> None:
     """The entry point.
 
-    A fault of rplan's own says so and exits with 70, what the system refuses (a full disk) with 2. Ctrl-C and a reader
-    that goes away are click's affair: it ends quietly. A letter that the terminal does not have is a question mark.
+    A fault of rplan's own says so and exits with 70; one of a library of the user's, and what the system refuses (a
+    full disk), with 2. Ctrl-C and a reader that goes away are click's affair: it ends quietly. A letter that the
+    terminal does not have is a question mark.
     """
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")
@@ -96,10 +100,13 @@ def main() -> None:
 
 
 def _report(error: Exception) -> None:
-    trace = error.__traceback__
-    while trace is not None and trace.tb_next is not None:
-        trace = trace.tb_next
-    where = f" ({trace.tb_frame.f_globals.get('__name__')}:{trace.tb_lineno})" if trace is not None else ""
+    places = [(str(frame.f_globals.get("__name__")), frame, line) for frame, line in walk_tb(error.__traceback__)]
+    for name, frame, line in reversed(places):
+        if name.startswith(OF_A_LIBRARY):
+            place = f"{frame.f_code.co_filename}:{line}"
+            click.echo(f"error: {place}: the library fails: {type(error).__name__}: {error}", err=True)
+            sys.exit(USED_WRONGLY)
+    where = f" ({places[-1][0]}:{places[-1][2]})" if places else ""
     click.echo(f"rplan has a fault of its own: {type(error).__name__}: {error}{where}", err=True)
     click.echo("Nothing is wrong with your plan as far as is known; please report this with the plan.", err=True)
     sys.exit(INTERNAL)

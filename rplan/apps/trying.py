@@ -130,7 +130,12 @@ def ticks_files(plan: Path) -> list[Path]:
 
 def read_golden(path: Path, compiled: Compiled) -> Golden:
     """The golden ticks of a file; `TicksError` with file and line, `OSError`."""
-    lines = path.read_text(encoding="utf-8-sig").splitlines()
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except UnicodeDecodeError as error:
+        raise TicksError(
+            f"{path}: this is not a text: {error.reason} at byte {error.start}, where UTF-8 is wanted"
+        ) from None
     names = percept_names(compiled)
     values: Values = dict(nothing(compiled.ways))
     ticks: list[GoldenTick] = []

@@ -88,6 +88,20 @@ def test_an_internal_error_inside_a_command_reaches_the_entry_point(
     assert "InternalError: no circuit" in capsys.readouterr().err
 
 
+def test_a_fault_of_a_library_of_the_users_is_told_apart(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    library = "from behaviours.interface import Library\ndef build(values, workshop):\n    return {}[1]\n"
+    (tmp_path / "arm.py").write_text(library + "ARM = Library('arm', '', (), (), build)\n", encoding="utf-8")
+    (tmp_path / "plan.rplan").write_text("(use arm)(goalem (when (lost) (do lamp on)))", encoding="utf-8")
+    given = ["check", str(tmp_path / "plan.rplan"), "--library", str(tmp_path / "arm.py")]
+    monkeypatch.setattr(sys, "argv", ["rplan", *given])
+    with pytest.raises(SystemExit) as caught:
+        cli.main()
+    assert caught.value.code == 2
+    assert capsys.readouterr().err == f"error: {tmp_path}/arm.py:3: the library fails: KeyError: 1\n"
+
+
 def apart(*arguments: str, stdout: int = subprocess.PIPE) -> subprocess.Popen[bytes]:
     command = [sys.executable, "-c", "from rplan.apps.cli import main; main()"]
     return subprocess.Popen(

@@ -107,11 +107,34 @@ def test_the_setting_names_the_plans_by_patterns(pytester: pytest.Pytester, run)
 
 def test_libraries_in_files_are_a_setting(pytester: pytest.Pytester, run) -> None:
     pytester.makeini("[pytest]\nrplan_files = *.rplan\nrplan_libraries = arm.py\n")
-    library = "from behaviours.interface import Library, Offer\nARM = Library('arm', 'An arm.', (), (), {})\n"
+    library = (
+        "from behaviours.interface import Library, Offer\n"
+        "ARM = Library('arm', 'An arm.', (), (), lambda values, workshop: Offer())\n"
+    )
     write(pytester, library, "arm.py")
     write(pytester, "(use arm)" + HEAD)
     result = run()
     assert "unknown-library" not in result.stdout.str()
+    assert "errors" not in result.parseoutcomes()
+
+
+@pytest.mark.parametrize(
+    ("library", "says"), [(None, "there is no file *arm.py"), ("import nothing_there\n", "*arm.py cannot be loaded: *")]
+)
+def test_a_library_that_cannot_be_loaded_is_one_clear_error(
+    library: str | None, says: str, pytester: pytest.Pytester, run
+) -> None:
+    pytester.makeini("[pytest]\nrplan_files = *.rplan\nrplan_libraries = arm.py\n")
+    if library is not None:
+        write(pytester, library, "arm.py")
+    write(pytester, HEAD)
+    write(pytester, "[]\n", "guard.ticks")
+    pytester.makepyfile("def test_it(plan):\n    plan('guard.rplan')\n")
+    result = run("--continue-on-collection-errors")
+    result.assert_outcomes(errors=1, failed=2)
+    result.stdout.fnmatch_lines([says] * 3)
+    assert "libraries.py" not in result.stdout.str()
+    assert "another exception" not in result.stdout.str()
 
 
 def test_a_plan_that_does_not_compile_is_one_clear_error(pytester: pytest.Pytester, run) -> None:
@@ -349,6 +372,15 @@ def test_wrong_golden_ticks_say_file_and_line(text: str, says: str, pytester: py
     result = run("--rplan", "guard.ticks")
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines([f"*{says}"])
+
+
+def test_golden_ticks_that_are_no_text_are_told(pytester: pytest.Pytester, run) -> None:
+    write(pytester, HEAD)
+    write(pytester, "", "guard.ticks").write_bytes(b"[]\n\xff\n")
+    result = run("--rplan", "guard.ticks")
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*guard.ticks: this is not a text: * at byte 3, where UTF-8 is wanted"])
+    assert "codecs" not in result.stdout.str()
 
 
 def test_ticks_of_no_plan_are_left_alone(pytester: pytest.Pytester, run) -> None:

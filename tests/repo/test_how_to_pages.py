@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 from pathlib import Path
+from shlex import quote
 from shutil import copytree, ignore_patterns, which
 
 import numpy as np
@@ -63,7 +64,7 @@ def test_the_program_of_the_page_of_engines_runs_a_thousand_robots(root: Path) -
 
 def test_the_c_of_the_page_of_engines_goes_with_the_c_of_the_plan(root: Path, tmp_path: Path) -> None:
     (shown,) = blocks(root / "docs/reference/engines.md", "c")
-    code = run(f"rplan compile {root / 'plans/find_and_fetch'} --emit c")
+    code = run(f"rplan compile {quote(str(root / 'plans' / 'find_and_fetch'))} --emit c")
     source = tmp_path / "page.c"
     source.write_text(f"{code}\nint main(void)\n{{\n{shown}\nreturn 0;\n}}\n", encoding="utf-8")
     compiler = which("cc") or which("gcc") or which("clang")

@@ -80,6 +80,7 @@ def _matches(path: Path, patterns: list[str]) -> bool:
 def plan(request: pytest.FixtureRequest) -> Callable[[str | Path], PlanUnderTest]:
     """`plan("patrol.rplan")`: a plan under test; a path that is not found as it stands is one beside the test."""
     from rplan.apps.files import InputError, plan_file
+    from rplan.apps.libraries import LibraryError
     from rplan.lang.diagnostic import PlanError
 
     def opened(path: str | Path) -> PlanUnderTest:
@@ -89,6 +90,8 @@ def plan(request: pytest.FixtureRequest) -> Callable[[str | Path], PlanUnderTest
             return shelf_of(request.config).under_test(plan_file(str(beside if beside.exists() else path)))
         except InputError as error:
             said = error.format_message()
+        except LibraryError as error:
+            said = str(error)
         except PlanError as error:
             from rplan.apps.pytest_plugin.shelf import rendered
 

@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 from _pytest._code.code import ReprExceptionInfo, ReprFileLocation, ReprTracebackNative
 
+from rplan.apps.libraries import LibraryError
 from rplan.apps.pytest_plugin import shelf_of
 from rplan.apps.pytest_plugin.shelf import Plan, rendered
 from rplan.apps.testing import Moment, said, way_lines
@@ -106,7 +107,7 @@ def _readable(error: BaseException) -> str | None:
     match error:
         case PlanError():
             return rendered(error)
-        case TicksError() | OSError():
+        case TicksError() | LibraryError() | OSError():
             return str(error)
         case _:
             return None
@@ -249,7 +250,7 @@ class TicksItem(PlanItem):
             plan = shelf_of(self.config).plan(self.parent.plan)
             golden = read_golden(self.path, plan.compiled)
             stood = try_golden(decider(plan.compiled), Trace(plan.compiled.ways), golden, plan.watch)
-        except (PlanError, TicksError, OSError) as error:
+        except (PlanError, TicksError, LibraryError, OSError) as error:
             raise FailedError(_readable(error)) from None
         if stood.differing and self.config.getoption("--rplan-bless"):
             self.path.write_text(blessed(golden, stood.now), encoding="utf-8")
