@@ -367,11 +367,12 @@ def _given(text: str, compiled: Compiled) -> dict[str, PerceptValue]:
     values: dict[str, PerceptValue] = {}
     for part in split(text):
         name, equals, value = (word.strip() for word in part.rpartition("=")) if "=" in part else (part.strip(), "", "")
+        name = _spaced(name)
         if not name or name in values:
             raise InputError(f"--given: `{part.strip()}`: " + ("it is there twice" if name else "a percept is wanted"))
         if " " in name and not name.startswith("("):
             raise InputError(f"--given: `{part.strip()}`: a percept is wanted; several are separated by commas")
-        function = compiled.goals.functions.get(name.removeprefix("(").removesuffix(")"))
+        function = compiled.goals.functions.get("".join(_words(name)[:1]))
         unit = function.type.unit if function is not None and function.type is not None else ""
         values[name] = _value(part.strip(), value, unit) if equals else True
     return values
@@ -400,23 +401,32 @@ def wishes(text: str, ways: Ways) -> Wanted:
             name = name[len("(open ") : -1].strip()
         elif not equals:
             raise InputError(f"`{part.strip()}`: OUTPUT=VALUE is wanted, or OUTPUT= for one that stays open")
-        if name in found:
-            raise InputError(f"`{name}` is there twice")
+        if not name or name in found:
+            raise InputError(f"`{name}` is there twice" if name else f"`{part.strip()}`: OUTPUT=VALUE is wanted")
         found[name] = _canonical(value, ways.sets.get(name, {})) if value else None
     if not found:
         raise InputError("OUTPUT=VALUE is wanted")
     return found
 
 
-def _canonical(value: str, known: dict[str, int]) -> str:
-    """The value as the plan has it: spaces once, numbers in SI, parentheses around a call."""
-    words = " ".join(value.split()).replace("( ", "(").replace(" )", ")")
-    if words not in known and f"({words})" in known:
-        return f"({words})"
+def _canonical(value: str, known: Iterable[str]) -> str:
+    """The value as the plan has it: spaces once, numbers in SI, parentheses around what is called at any depth."""
+    meant = [one for one in known if _words(one) == _words(value)]
+    if len(meant) == 1 and value.count("(") == value.count(")"):
+        return meant[0]
     try:
-        return canonical_number(*read_number(words))
+        return canonical_number(*read_number(value.strip()))
     except BadNumberError:
-        return words
+        return _spaced(value)
+
+
+def _spaced(text: str) -> str:
+    """A call with its spaces as in canonical text."""
+    return " ".join(text.split()).replace("( ", "(").replace(" )", ")")
+
+
+def _words(text: str) -> list[str]:
+    return text.replace("(", " ").replace(")", " ").split()
 
 
 def split(text: str) -> list[str]:

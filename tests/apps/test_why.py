@@ -462,6 +462,8 @@ def test_a_plan_in_which_nothing_lost_says_so(tmp_path: Path) -> None:
         (("--given", "distanc"), "neither declares nor reads (did you mean `distance`?)"),
         (("--given", "seen, seen"), "--given: `seen`: it is there twice"),
         (("--given", "seen, (seen)"), "is there twice, also as"),
+        (("--given", "()=4"), "--given: `()` is a percept that the plan neither declares nor reads"),
+        (("--given", "=4"), "--given: `=4`: a percept is wanted"),
         (("--given", "seen,, distance=1"), "--given: ``: a percept is wanted"),
         (
             ("--given", "seen distance=1"),
@@ -499,6 +501,7 @@ def test_a_bad_trace_is_a_clear_error(lines: str, says: str, guard: Path, tmp_pa
         ("", "OUTPUT=VALUE is wanted"),
         ("action", "`action`: OUTPUT=VALUE is wanted, or OUTPUT= for one that stays open"),
         ("action=back, action=", "`action` is there twice"),
+        ("=5", "`=5`: OUTPUT=VALUE is wanted"),
         ("acton=back", "there is no output acton (there are: action, note)"),
         ("action=fly", "the plan never sets action to fly (what it can be: back, follow, stand)"),
     ],
@@ -512,6 +515,21 @@ def test_a_plan_that_is_wrong_is_said_to_be(tmp_path: Path) -> None:
     plan.write_text("(goalem (ach nothing))")
     assert "error[no-rule]" in wrong("why", plan, "--given", "", code=1)
     assert json.loads(run("why", plan, "--given", "", "--json").stdout)["ok"] is False
+
+
+def test_percepts_and_values_may_have_arguments(tmp_path: Path) -> None:
+    plan = tmp_path / "rooms.rplan"
+    plan.write_text(
+        "(plan rooms) (declare (door (place symbol)) bool) (declare (far (place symbol)) (number m))\n"
+        "(defoutput x symbol) (defgoalr (ach go ?p) (do x (enter ?p)))\n"
+        "(goalem (if (and (door hall) (< (far hall) 2m)) (ach go hall) (ach go home)))"
+    )
+    given = "( door  hall ), (far hall) = 150cm"
+    assert "  x is (enter (hall)): set by" in run("why", plan, "--given", given).stdout
+    for meant in ("(enter home)", "enter home", "( enter  (home) )"):
+        assert told("why-not", plan, f"x={meant}", "--given", given)["wanted"] == {"x": "(enter (home))"}
+    assert "its unit is m, not s" in wrong("why", plan, "--given", "(far hall)=3s")
+    assert "never sets x to (enter home (" in wrong("why-not", plan, "x=(enter home", "--given", given)
 
 
 def test_a_number_may_be_wanted_in_any_unit(tmp_path: Path) -> None:
