@@ -13,6 +13,7 @@ from behaviours.cores.geometry import along, distance
 from behaviours.interface import Channels, Pose, Reading, Report
 
 PLACES = 6
+AROUND = 0.8  # [m] from where it started
 STANDS, THERE = 0.01, 0.7
 """Below this speed [m/s] the robot stands; so near [m] to the place it waits there."""
 
@@ -20,13 +21,13 @@ STANDS, THERE = 0.01, 0.7
 class Home:
     """The pose of the first reading; None before it.
 
-    place: where to wait. Where nobody has taken the object within `patience` [s], the next of six places `around` [m]
+    place: where to wait. Where nobody has taken the object within `patience` [s], the next of six places `AROUND`
     the pose, which itself comes after them again.
     """
 
-    def __init__(self, patience: float = math.inf, around: float = 0.8) -> None:
+    def __init__(self, patience: float = math.inf) -> None:
         self.pose: Pose | None = None
-        self._patience, self._around = patience, around
+        self._patience = patience
         self._tried = 0
         self._since = 0.0
 
@@ -36,7 +37,7 @@ class Home:
         turn = self._tried % (PLACES + 1)
         if self.pose is None or turn == 0:
             return self.pose
-        return along(self.pose, self.pose.theta + turn * math.tau / PLACES, self._around)
+        return along(self.pose, self.pose.theta + turn * math.tau / PLACES, AROUND)
 
     def update(self, reading: Reading, reports: Mapping[str, Report], channels: Channels) -> None:
         if self.pose is None:

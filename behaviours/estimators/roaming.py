@@ -22,6 +22,8 @@ from behaviours.estimators.donor import DonorMemory
 from behaviours.estimators.ir_search import START, IrSearch
 from behaviours.interface import Channels, Pose, Reading, Report
 
+SPACING = 9.0  # [m] between rings, and between stops on one
+
 
 @dataclass(frozen=True, slots=True)
 class RoamingSettings:
@@ -148,10 +150,10 @@ class Roaming:
         )
 
 
-def rings(home: Pose, farthest: float, spacing: float = 9.0) -> tuple[Pose, ...]:
-    """Stops on rings about home, `spacing` [m] from one another, from the inside out."""
+def rings(home: Pose, farthest: float) -> tuple[Pose, ...]:
+    """Stops on rings about home, `SPACING` from one another, from the inside out."""
     stops = []
-    for ring in range(1, max(1, round(farthest / spacing)) + 1):
+    for ring in range(1, max(1, round(farthest / SPACING)) + 1):
         count = math.ceil(math.tau * ring)
-        stops += [along(home, home.theta + k * math.tau / count, ring * spacing) for k in range(count)]
+        stops += [along(home, home.theta + k * math.tau / count, ring * SPACING) for k in range(count)]
     return tuple(stops)

@@ -18,8 +18,9 @@ NOTHING: Values = {}
 class Percepts:
     """Call it with each reading of a run, in order; `begin` before the first of the next run.
 
-    settings: library → its parameters in SI, where they shall not be as they come. Raises ValueError for a library
-    that there is not, or that refuses its parameters.
+    settings: library → its parameters in SI, where they shall not be as they come. offered: the libraries there are,
+    those that are installed where it is left out. Raises ValueError for a library that there is not, or that refuses
+    its parameters.
     """
 
     def __init__(

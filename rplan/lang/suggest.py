@@ -25,19 +25,18 @@ def close(name: str, candidates: Iterable[str], shortest: int = SHORTEST) -> str
 class Names:
     """Names that are asked for many times: as `close`, at a cost that does not grow with their number."""
 
-    def __init__(self, names: Iterable[str], shortest: int = SHORTEST) -> None:
+    def __init__(self, names: Iterable[str]) -> None:
         self._names = [*dict.fromkeys(names)]
-        self._shortest = shortest
         self._known = frozenset(self._names)
         self._by_rest: dict[str, list[int]] = {}
         for number, name in enumerate(self._names):
-            if len(name) >= shortest:
+            if len(name) >= SHORTEST:
                 for rest in _rests(name):
                     self._by_rest.setdefault(rest, []).append(number)
 
     def close(self, name: str) -> str | None:
         """The first of the names that is one slip away from name."""
-        if len(name) < self._shortest or name in self._known:
+        if len(name) < SHORTEST or name in self._known:
             return None
         near = {number for rest in _rests(name) for number in self._by_rest.get(rest, ())}
         return next((self._names[number] for number in sorted(near) if _one_slip(name, self._names[number])), None)

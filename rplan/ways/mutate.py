@@ -22,6 +22,7 @@ from rplan.ways.differ import differences
 from rplan.ways.reduce import Ways
 
 T = TypeVar("T")
+MOST_LETTERS = 48
 Kind = Literal["negate", "connective", "number", "comparison", "swap", "drop", "order", "value"]
 KINDS: tuple[Kind, ...] = ("negate", "connective", "number", "comparison", "swap", "drop", "order", "value")
 Values = Mapping[str, Sequence[p.Expression]]
@@ -183,9 +184,9 @@ def _in_several(goal: p.And | p.Or | p.PrioAnd, goals: tuple[p.Goal, ...], value
             yield slip, replace(goal, goals=_put(goals, n, changed))
 
 
-def shortened(text: str, most: int = 48) -> str:
+def shortened(text: str) -> str:
     """A text cut short."""
-    return text if len(text) <= most else f"{text[: most - 1]}…"
+    return text if len(text) <= MOST_LETTERS else f"{text[: MOST_LETTERS - 1]}…"
 
 
 # --- conditions ---

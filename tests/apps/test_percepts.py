@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from behaviours.catalogue import LIBRARIES
 from behaviours.interface import Odometry, Pose, Reading
 from rplan.apps.percepts import Percepts
 
@@ -16,6 +17,13 @@ def test_every_percept_of_the_libraries_is_told():
     percepts = Percepts("robot", "sensors", settings={"sensors": {"far": 30.0}})
     says = percepts(reading(2.0))
     assert (says["speed"], says["time-since-start"], says["lidar-range-ahead"]) == (0.4, 2.0, 30.0)
+
+
+def test_the_libraries_to_choose_from_may_be_given():
+    percepts = Percepts("mine", offered={"mine": LIBRARIES["robot"]})
+    assert percepts(reading(2.0))["speed"] == 0.4
+    with pytest.raises(ValueError, match="no library 'robot'; known: mine"):
+        Percepts("robot", offered={"mine": LIBRARIES["robot"]})
 
 
 def test_a_run_begins_without_what_was_before():

@@ -30,6 +30,13 @@ def drive(environment: Environment, command: Command, seed: int = 0) -> list:
     return steps
 
 
+def test_a_tick_is_as_long_as_it_was_asked_for():
+    environment = Environment(loads(ROOM), period=0.05)
+    environment.reset()
+    stamps = [environment.step(AHEAD).seen.stamp for _ in range(3)]
+    assert stamps[2] - stamps[1] == pytest.approx(0.05) == stamps[1] - stamps[0]
+
+
 def test_a_run_ends_at_the_goal():
     environment = Environment(loads(ROOM))
     steps = drive(environment, AHEAD)

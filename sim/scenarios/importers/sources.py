@@ -23,6 +23,7 @@ from sim.scenarios.importers.imported import Options, WorldFileError, number, sh
 
 MOST_BYTES = 128 * 2**20
 MOST_UNPACKED = 256 * 2**20
+MOST_ITEMS = 100_000
 PICTURES = ("PNG", "PPM", "BMP", "GIF", "JPEG")
 Grey = NDArray[np.uint8] | NDArray[np.float32]
 
@@ -88,12 +89,12 @@ def read_json(path: Path) -> dict[str, Any]:
     return value
 
 
-def listed(value: object, file: str, what: str, most: int = 100_000) -> list[Any]:
+def listed(value: object, file: str, what: str) -> list[Any]:
     """The value as a list of at least one. Raises WorldFileError."""
     if not isinstance(value, list) or not value:
         raise WorldFileError(file, 0, f"{what}: expected a list, got {shown(value)}")
-    if len(value) > most:
-        raise WorldFileError(file, 0, f"{what}: {len(value):,} are too many; at most {most:,} are read")
+    if len(value) > MOST_ITEMS:
+        raise WorldFileError(file, 0, f"{what}: {len(value):,} are too many; at most {MOST_ITEMS:,} are read")
     return value
 
 
