@@ -177,6 +177,14 @@ def test_all_else_arrives_for_every_tick(run: Recording, tmp_path: Path) -> None
     assert run_of(packed, "reports")[7]["(go)"]["details"]["circles"] == [[8.23, 2.0, 0.5, 0]]
 
 
+def test_numbers_that_a_plan_compares_arrive_in_hundredths() -> None:
+    plan: dict[str, Any] = {"inputs": "1", "outputs": {}}
+    levels = [{"(battery-level)": level} for level in (0.951, 0.949, 0.938)]
+    ticks = [{"t": k / 10, "world": {}, "plan": plan | {"percepts": level}} for k, level in enumerate(levels)]
+    packed = dict(pack(Recording(HEADER, ticks)))
+    assert run_of(packed, "percepts") == [{"(battery-level)": level} for level in (0.95, 0.95, 0.94)]
+
+
 def test_equal_values_are_kept_once(run: Recording) -> None:
     packed = pack(run)
     outputs: Any = packed["runs"]

@@ -86,7 +86,7 @@ window.live = (() => {
     const button = (words, value) => { const b = make("button", "", words); b.dataset.value = JSON.stringify(value); b.onclick = () => tell({do: "force", percept: name, value}); return b; };
     if (kind === "truth") row.append(button("as is", null), button("true", true), button("false", false));
     else {
-      const given = make("input", ""); given.type = "number"; given.step = "any"; given.setAttribute("aria-label", `${name} forced to`);
+      const given = make("input", ""); given.type = "number"; given.step = "any"; given.placeholder = "number"; given.setAttribute("aria-label", `${name} forced to`);
       given.onchange = () => tell({do: "force", percept: name, value: given.value === "" ? null : Number(given.value)});
       row.append(button("as is", null), given);
     }
