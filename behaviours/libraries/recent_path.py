@@ -7,7 +7,7 @@ share. Leaves alone: steering clear of the path (the library `svfh`).
 from __future__ import annotations
 
 from behaviours.cores.recent_path import TraceSettings
-from behaviours.declaring import boolean, chosen, parameters, settings_of
+from behaviours.declaring import boolean, chosen, parameters, positive, settings_of
 from behaviours.estimators.recent_path import RecentPath
 from behaviours.interface import Library, Offer, Parameter, Values, View, Workshop
 from behaviours.libraries.sharing import localisation
@@ -22,6 +22,8 @@ _TRACE = parameters(
     ("progress", "m", "`modern`: a robot that stays within this radius makes no progress (chosen here)."),
     ("patience", "s", "`modern`: without progress for so long it is in a dead end, to be closed (chosen here)."),
 )
+MOST_POINTS = 10_000
+"""All of them are looked at with every tick."""
 _PRESET = Parameter(
     "preset", "symbol", "", "paper", "`paper`: forgets by time; `modern`: by distance, and remembers dead ends."
 )
@@ -39,6 +41,9 @@ def recent_path(workshop: Workshop, settings: TraceSettings | None = None) -> Re
 def _build(values: Values, workshop: Workshop) -> Offer:
     modern = chosen(_PRESET, values, "paper", "modern") == "modern"
     settings = settings_of(TraceSettings(by_distance=modern), _TRACE, values)
+    positive("spacing", settings.spacing)
+    if settings.points > MOST_POINTS:
+        raise ValueError(f"points must be at most {MOST_POINTS}, not {settings.points}")
     path, place = recent_path(workshop, settings), localisation(workshop)
 
     def view() -> View | None:

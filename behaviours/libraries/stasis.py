@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from behaviours.competences.escape import Escape
 from behaviours.cores.stasis import CycleSettings, EscapeSettings, LevelSettings, PatienceSettings
-from behaviours.declaring import boolean, chosen, command, number, parameters, settings_of
+from behaviours.declaring import boolean, chosen, command, number, parameters, positive, settings_of
 from behaviours.estimators.stasis import Stasis, StasisSettings
 from behaviours.interface import Library, Offer, Parameter, Values, Workshop
 from behaviours.libraries.recent_path import recent_path
@@ -43,6 +43,8 @@ _CYCLE = parameters(
     ("window", "s", "Motion that repeats itself within this time is stasis; `modern` alone (chosen here)."),
     ("likeness", "", "Autocorrelation of poses from which a motion repeats itself (chosen here)."),
 )
+LONGEST_WINDOW = 600.0
+"""[s] All poses of the window are compared with each sample."""
 _RELEASE = Parameter(
     "release", "number", "", 1.0, "An escape ends below this level; with `modern` always at 0 (chosen here)."
 )
@@ -64,11 +66,26 @@ _RANGES = Parameter(
 )
 
 
+def _level(values: Values, modern: bool) -> LevelSettings:
+    level = settings_of(LevelSettings(), (*_LEVEL, _RELEASE), {**values, "release": 0.0} if modern else values)
+    if level.cap < positive("threshold", level.threshold):
+        raise ValueError(f"cap must be at least the threshold, {level.threshold}, or the robot is never stuck")
+    return level
+
+
+def _cycle(values: Values) -> CycleSettings:
+    cycle = settings_of(CycleSettings(), _CYCLE, values)
+    least = cycle.longest + 2.0 * cycle.sample
+    if not least <= cycle.window <= LONGEST_WINDOW:
+        raise ValueError(f"window must be from {least:g} to {LONGEST_WINDOW:g} s, not {cycle.window}")
+    return cycle
+
+
 def _settings(values: Values, modern: bool) -> StasisSettings:
     return StasisSettings(
-        settings_of(LevelSettings(), (*_LEVEL, _RELEASE), {**values, "release": 0.0} if modern else values),
+        _level(values, modern),
         settings_of(EscapeSettings(), _ESCAPE, values),
-        settings_of(CycleSettings(), _CYCLE, values),
+        _cycle(values),
         settings_of(PatienceSettings(), _PATIENCE, values),
         modern,
         settings_of(StasisSettings(), (_SLIPPING,), values).slipping,

@@ -166,3 +166,12 @@ def test_out_of_an_alley_the_robot_does_not_go_in_again_beside_its_path():
     inside = [moment.pose.x > 0.3 for moment in seen.moments if moment.time < 75.0]
     assert sum(now and not last for last, now in pairwise(inside)) == 1
     assert min(moment.pose.y for moment in seen.moments if moment.time < 75.0) < -6.0, "on along the wall"
+
+
+@pytest.mark.parametrize(
+    ("values", "says"),
+    [({"spacing": 0.0}, "spacing must be finite and more than 0"), ({"points": 1e9}, "points must be at most 10000")],
+)
+def test_a_path_without_end_is_refused(values, says):
+    with pytest.raises(ValueError, match=says):
+        LIBRARIES["recent-path"].build({"preset": "modern", **values}, Workshop())

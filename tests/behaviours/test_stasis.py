@@ -316,3 +316,22 @@ def test_ordinary_driving_raises_no_alarm():
     seen = watch(compile_file(PLANS / "perimeter/perimeter.rplan"), load(PLANS / "perimeter/worlds/alley.yaml"), 0)
     assert seen.verdict.distance > 20
     assert not any(moment.percepts["(the-robot-is-stuck)"] for moment in seen.moments)
+
+
+@pytest.mark.parametrize(
+    ("values", "says"),
+    [
+        ({"window": 0.0}, "window must be from 16 to 600 s, not 0"),
+        ({"window": 1e9}, "window must be from 16 to 600 s"),
+        ({"cap": 0.5}, "cap must be at least the threshold, 1.0"),
+        ({"threshold": 0.0}, "threshold must be finite and more than 0"),
+    ],
+)
+def test_parameters_that_make_no_sense_are_refused(values, says):
+    with pytest.raises(ValueError, match=says):
+        LIBRARIES["stasis"].build({"preset": "modern", **values}, Workshop())
+
+
+def test_the_shortest_window_sees_motion_that_repeats_itself():
+    poses = np.array([(math.cos(0.5 * k), math.sin(0.5 * k)) for k in range(32)])
+    assert repeats(poses, CycleSettings(window=16.0)) == pytest.approx(6.5, abs=0.5)
