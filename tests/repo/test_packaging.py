@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 import re
+import sys
 import tomllib
 import zipfile
 from pathlib import Path
@@ -45,6 +47,34 @@ def test_nothing_is_left_for_later(texts: dict[Path, str], root: Path) -> None:
         for word in UNFINISHED.findall(text.replace(WITHOUT_DATA, ""))
     ]
     assert found == []
+
+
+OF_OTHER_NAMES = {"PIL": "pillow", "_pytest": "pytest", "foxglove": "foxglove-sdk", "yaml": "pyyaml", "z3": "z3-solver"}
+"""Modules that are not called as what is installed for them."""
+
+
+def test_everything_that_is_imported_is_asked_for(texts: dict[Path, str], root: Path) -> None:
+    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    wanted = [*project["dependencies"], *(one for extra in project["optional-dependencies"].values() for one in extra)]
+    known = {re.split(r"[^\w-]", one)[0].lower() for one in wanted}
+    known |= {*sys.stdlib_module_names, "_typeshed", "behaviours", "sim"}
+    known |= {path.stem for folder in ("tests", "docs") for path in (root / folder).rglob("*")} | {"tests", "docs"}
+    found = [
+        f"{path.relative_to(root)}: {module}"
+        for path, text in texts.items()
+        if path.suffix == ".py"
+        for module in modules(text)
+        if OF_OTHER_NAMES.get(module, module) not in known
+    ]
+    assert found == []
+
+
+def modules(text: str) -> list[str]:
+    """What a program imports, without the parts of packages."""
+    nodes = list(ast.walk(ast.parse(text)))
+    names = [one.name for node in nodes if isinstance(node, ast.Import) for one in node.names]
+    names += [node.module or "" for node in nodes if isinstance(node, ast.ImportFrom) and node.level == 0]
+    return [name.partition(".")[0] for name in names]
 
 
 def test_the_gate_runs_the_test_command_of_the_readme(root: Path) -> None:
