@@ -34,7 +34,19 @@ SCAN_S, BEAMS = 0.2, 180
 
 WORLD_TRACKS = ("robot", "odometry", "head")
 WORLD_RUNS = ("contacts", "on_board", "stage")
-PLAN_RUNS = ("inputs", "percepts", "registers", "hole", "outputs", "sent", "way", "started", "stopped", "faults", "reports")
+PLAN_RUNS = (
+    "inputs",
+    "percepts",
+    "registers",
+    "hole",
+    "outputs",
+    "sent",
+    "way",
+    "started",
+    "stopped",
+    "faults",
+    "reports",
+)
 
 
 @dataclass(frozen=True, slots=True)
