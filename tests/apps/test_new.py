@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import shlex
@@ -108,6 +109,21 @@ def test_a_file_in_the_place_of_the_folder_is_said(tmp_path: Path) -> None:
     assert (result.exit_code, result.stderr.count("\n")) == (2, 1)
     assert "there is a file in its place" in result.stderr
     assert rplan("new", str(tmp_path / "taken")).exit_code == 2
+
+
+def test_where_not_every_file_can_be_written_none_is_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write = Path.write_text
+
+    def full(path: Path, text: str, encoding: str) -> int:
+        if path.name == "stroll.py":
+            write(path, text[:10], encoding=encoding)
+            raise OSError(errno.ENOSPC, "No space left on device", str(path))
+        return write(path, text, encoding=encoding)
+
+    monkeypatch.setattr(Path, "write_text", full)
+    result = CliRunner().invoke(cli, ["new", str(tmp_path / "shy")])
+    assert isinstance(result.exception, OSError)
+    assert names(tmp_path / "shy") == []
 
 
 @pytest.mark.parametrize(

@@ -383,6 +383,21 @@ def test_golden_ticks_that_are_no_text_are_told(pytester: pytest.Pytester, run) 
     assert "codecs" not in result.stdout.str()
 
 
+def test_golden_ticks_that_cannot_be_written_are_told(
+    pytester: pytest.Pytester, run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refused(path: Path, text: str, encoding: str) -> int:
+        raise PermissionError(13, "Permission denied", str(path))
+
+    write(pytester, HEAD)
+    write(pytester, "[]\n", "guard.ticks")
+    monkeypatch.setattr(Path, "write_text", refused)
+    result = run("--rplan", "--rplan-bless", "-p", "no:cacheprovider", "guard.ticks")
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*Permission denied: *guard.ticks'"])
+    assert "items.py" not in result.stdout.str()
+
+
 def test_ticks_of_no_plan_are_left_alone(pytester: pytest.Pytester, run) -> None:
     write(pytester, "12 31 44\n", "clock.ticks")
     write(pytester, '{"plan"\n', "broken.ticks.jsonl")

@@ -42,8 +42,7 @@ def command(folder: Path, name: str | None, bare: bool) -> None:
     files = project(called, bare=bare)
     _check_free(folder, files)
     folder.mkdir(parents=True, exist_ok=True)
-    for path, text in files.items():
-        (folder / path).write_text(text, encoding="utf-8")
+    _write(folder, files)
     _show(folder, files, bare)
 
 
@@ -72,6 +71,16 @@ def _check_free(folder: Path, files: dict[str, str]) -> None:
     there = [path for path in files if (folder / path).exists() or (folder / path).is_symlink()]
     if there:
         raise InputError(f"{folder} has {', '.join(there)} already; nothing was written")
+
+
+def _write(folder: Path, files: dict[str, str]) -> None:
+    try:
+        for path, text in files.items():
+            (folder / path).write_text(text, encoding="utf-8")
+    except OSError:
+        for path in files:
+            (folder / path).unlink(missing_ok=True)
+        raise
 
 
 def _show(folder: Path, files: dict[str, str], bare: bool) -> None:

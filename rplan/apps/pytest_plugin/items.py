@@ -250,11 +250,12 @@ class TicksItem(PlanItem):
             plan = shelf_of(self.config).plan(self.parent.plan)
             golden = read_golden(self.path, plan.compiled)
             stood = try_golden(decider(plan.compiled), Trace(plan.compiled.ways), golden, plan.watch)
+            if stood.differing and self.config.getoption("--rplan-bless"):
+                self.path.write_text(blessed(golden, stood.now), encoding="utf-8")
+                return
         except (PlanError, TicksError, LibraryError, OSError) as error:
             raise FailedError(_readable(error)) from None
-        if stood.differing and self.config.getoption("--rplan-bless"):
-            self.path.write_text(blessed(golden, stood.now), encoding="utf-8")
-        elif stood.differing:
+        if stood.differing:
             raise FailedError(shown(stood))
 
     def reportinfo(self) -> tuple[PathLike[str] | str, int | None, str]:
