@@ -18,6 +18,7 @@ from rplan.apps.drawing.inspect import Table, inspect
 from rplan.apps.drawing.inspect_page import page
 from rplan.apps.drawing.inspect_svg import draw
 from rplan.apps.drawing.inspect_text import WIDTH, text
+from rplan.apps.wiring import compile_file
 from rplan.circuit.evaluate import evaluate
 from rplan.driver import Compiled, compile_plan
 from rplan.lang.source import Source
@@ -155,6 +156,20 @@ def test_the_circuit_says_what_every_tick_costs() -> None:
     said = text(inspect(compiled(SMALL)), ["circuit"])
     assert re.search(r"^registers +1$", said, re.MULTILINE)
     assert re.search(r"^every tick +\d+ operations, the same whatever happens, every 0.1 s$", said, re.MULTILINE)
+
+
+def test_what_stands_in_an_included_text_is_said_with_its_file(tmp_path: Path) -> None:
+    (tmp_path / "rules.rplan").write_text("; a rule\n(defgoalr (ach one)\n  (when (a) (do x on)))", encoding="utf-8")
+    plan = tmp_path / "plan.rplan"
+    plan.write_text('(include "rules.rplan")\n(goalem (ach one))', encoding="utf-8")
+    said = rplan_inspect(str(plan)).stdout
+    assert "(ach one)  :2\n" in said
+    assert "then: do x := (on)  rules.rplan:3\n" in said
+    assert "(ach one)  rules.rplan:2\n    (a)\n" in said
+    one = json.loads(rplan_inspect(str(plan), "--percepts", "--json").stdout)["percepts"][0]
+    assert one["line"] is None and one["place"].endswith("rules.rplan:2:1")
+    shown = page(inspect(compile_file(plan)))
+    assert "(ach one) <i>rules.rplan:2</i>" in shown and "</span> <i>rules.rplan:3</i>" in shown
 
 
 def test_a_plan_that_asks_nothing_says_so() -> None:

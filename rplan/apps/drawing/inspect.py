@@ -63,7 +63,10 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class Branch:
-    """A place of the goal tree. says: what stands there; under: "", "then" or "else" of the `if` above, or its rank."""
+    """A place of the goal tree. says: what stands there; under: "", "then" or "else" of the `if` above, or its rank.
+
+    line: in the plan's own text, None in an included one.
+    """
 
     kind: Literal["rule", "do", "anything", "impossible", "if", "and", "or", "prio-and"]
     says: str
@@ -75,12 +78,16 @@ class Branch:
 
 @dataclass(frozen=True, slots=True)
 class Reads:
-    """What a rule asks in its own conditions, not in those of its subgoals; memory: those that ask the past."""
+    """What a rule asks in its own conditions, not in those of its subgoals; memory: those that ask the past.
+
+    place: of the rule, "" of the top goal; line: as in `Branch`.
+    """
 
     rule: str
     percepts: tuple[str, ...]
     memory: tuple[str, ...]
     line: int | None
+    place: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -267,17 +274,20 @@ def _reads(compiled: Compiled) -> Iterator[Reads]:
     """For each rule that is used, and last for the top goal, what it asks."""
     asked: dict[str, list[Condition]] = {}
     lines: dict[str, int | None] = {}
+    places: dict[str, str] = {}
     for goal in walk(compiled.goals.top):
         if isinstance(goal, Reduced):
             asked.setdefault(goal.head, [])
             here = goal.rule_span.file == compiled.source.name
             lines.setdefault(goal.head, goal.rule_span.line if here else None)
+            places.setdefault(goal.head, str(goal.rule_span))
         elif isinstance(goal, If):
             asked.setdefault(goal.rule or TOP, []).append(goal.condition)
     for rule, conditions in asked.items():
         terms = [term.text for c in conditions for atom in atoms_of(c) for term in percept_terms(atom)]
         memory = [one.text for c in conditions for one in _memories(c)]
-        yield Reads(rule, tuple(dict.fromkeys(terms)), tuple(dict.fromkeys(memory)), lines.get(rule))
+        percepts, past = tuple(dict.fromkeys(terms)), tuple(dict.fromkeys(memory))
+        yield Reads(rule, percepts, past, lines.get(rule), places.get(rule, ""))
 
 
 TOP = "the top goal"

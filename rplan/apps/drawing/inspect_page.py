@@ -13,7 +13,7 @@ from importlib.resources import files
 from rplan.apps.drawing.inspect import Branch, Inspection, Row
 from rplan.apps.drawing.inspect_circuit import MOST_GATES, tagged
 from rplan.apps.drawing.inspect_svg import words
-from rplan.apps.drawing.inspect_text import RANKED, WIDEST
+from rplan.apps.drawing.inspect_text import RANKED, WIDEST, where
 
 UNFOLDED = 80
 """A tree of no more places than these is shown whole; of a larger one the rules are folded."""
@@ -93,7 +93,11 @@ def _places(branch: Branch) -> int:
 
 
 def _tree(branch: Branch, whole: bool) -> Iterator[str]:
-    line = f' <a href="#line-{branch.line}">{branch.line}</a>' if branch.line else f" <i>{escape(branch.place)}</i>"
+    line = (
+        f' <a href="#line-{branch.line}">{branch.line}</a>'
+        if branch.line
+        else f" <i>{escape(where(branch).strip())}</i>"
+    )
     said = f'<span class="{branch.kind}">{escape(words(branch))}</span>{line}'
     if not branch.inside:
         yield f'<div class="leaf place">{said}</div>'
@@ -124,7 +128,11 @@ def _percepts(inspection: Inspection) -> Iterator[str]:
     yield "<table><thead><tr><th>rule</th><th>asks</th></tr></thead><tbody>"
     for reads in inspection.percepts:
         asks = "".join(f"<div>{escape(one)}</div>" for one in (*reads.percepts, *reads.memory))
-        line = f' <a href="#line-{reads.line}">{reads.line}</a>' if reads.line else ""
+        line = (
+            f' <a href="#line-{reads.line}">{reads.line}</a>'
+            if reads.line
+            else f" <i>{escape(where(reads).strip())}</i>"
+        )
         yield f'<tr class="hit"><td class="rule">{escape(reads.rule)}{line}</td><td>{asks or "nothing"}</td></tr>'
     yield "</tbody></table>"
 

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import takewhile
+from pathlib import PurePath
 
-from rplan.apps.drawing.inspect import Branch, Inspection, Row, Table
+from rplan.apps.drawing.inspect import Branch, Inspection, Reads, Row, Table
 
 WIDEST = 24
 """So many conditions have a column each; of more, each row says those that it asks."""
@@ -88,11 +89,18 @@ def goals_text(inspection: Inspection) -> str:
 def _tree(branch: Branch, first: str, rest: str) -> Iterator[str]:
     words = {"if": f"if {branch.says}", "do": f"do {branch.says}"}.get(branch.kind, branch.says)
     under = f"{branch.under}: " if branch.under else ""
-    line = f"  :{branch.line}" if branch.kind in ("rule", "do") and branch.line else ""
+    line = where(branch) if branch.kind in ("rule", "do") else ""
     yield f"{first}{under}{words}{line}"
     for number, one in enumerate(branch.inside):
         last = number == len(branch.inside) - 1
         yield from _tree(one, rest + ("└─ " if last else "├─ "), rest + ("   " if last else "│  "))
+
+
+def where(one: Branch | Reads) -> str:
+    """The line in the plan's own text; of an included text its file as well, without the folder."""
+    if one.line is not None:
+        return f"  :{one.line}"
+    return f"  {PurePath(one.place.rpartition(':')[0]).name}" if one.place else ""
 
 
 def circuit_text(inspection: Inspection) -> str:
@@ -118,7 +126,7 @@ def percepts_text(inspection: Inspection) -> str:
     """What each rule asks, and by how many each percept is asked."""
     lines: list[str] = []
     for reads in inspection.percepts:
-        lines.append(reads.rule + (f"  :{reads.line}" if reads.line else ""))
+        lines.append(reads.rule + where(reads))
         lines += [f"    {one}" for one in (*reads.percepts, *reads.memory)] or ["    asks nothing"]
     counts: dict[str, int] = {}
     for reads in inspection.percepts:
