@@ -27,6 +27,8 @@ from behaviours.interface import Channels, Floats, Pose, Reading, Report, Scan, 
 
 TOLD = 0.1
 """A scan of which a smaller share says anything is none."""
+FEW = 3
+"""Where there are fewer points than a wall has, so many must be what is turned about, lest it go on by chance."""
 INSIDE = 0.05
 """[m] What lies so far within the hull is a mistake of the sensor."""
 MOST = math.radians(120)
@@ -112,9 +114,16 @@ class WallAndCorners(FittedWall):
 
     def _tells(self, scan: Scan, points: Floats) -> bool:
         """Whether enough of the beams say something that can be."""
+        if len(points) < self.settings.fit.least and self.mode != "none" and not self._holds_on(points):
+            return False
         says = np.count_nonzero(np.isfinite(scan.ranges) & (scan.ranges > scan.min_range))
         within = np.count_nonzero(np.hypot(points[:, 0], points[:, 1]) < self._here.hull_radius - INSIDE)
         return bool(says - within >= max(1.0, TOLD * len(scan.ranges)))
+
+    def _holds_on(self, points: Floats) -> bool:
+        """Whether the few points are those of the place that the robot turns about."""
+        off = np.hypot(points[:, 0] - self._contact[0], points[:, 1] - self._contact[1])
+        return self.mode in ("end", "corner") and np.count_nonzero(off <= self._here.corner.leap) >= FEW
 
     def _bar(self, least: float) -> None:
         """Where to go past what bars the way; it is turned about if that is far aside."""

@@ -20,6 +20,8 @@ from behaviours.estimators.surroundings import Surroundings
 from behaviours.estimators.walls import SHOWN_BAND, Walls
 from behaviours.interface import Channels, Reading, Report, wrap
 
+FEW = 3
+"""Who sees fewer points does not go on."""
 INSIDE = 0.05
 """[m] What lies so far within the hull is a mistake of the sensor; a scan most of which does is none."""
 Mode = Literal["none", "wall", "search", "lost"]
@@ -60,10 +62,8 @@ class WallOfLines:
             return
         flip = 1.0 if self._walls.settings.right else -1.0
         points, seen = self._around.points * (1.0, flip), self._walls.line
-        if (
-            np.count_nonzero(np.hypot(points[:, 0], points[:, 1]) < self.settings.hull_radius - INSIDE)
-            > len(points) / 2
-        ):
+        within = np.count_nonzero(np.hypot(points[:, 0], points[:, 1]) < self.settings.hull_radius - INSIDE)
+        if within > len(points) / 2 or (len(points) < FEW and self.mode != "none"):
             self.mode, self.offset, self.angle, self.ends = "lost", 0.0, 0.0, False
             return
         here, stand_off = self.settings, self._walls.settings.follow.stand_off

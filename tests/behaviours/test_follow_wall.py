@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -242,3 +243,42 @@ def test_the_corner_ahead_is_said():
     across = 0.9 / np.maximum(np.cos(BEARINGS), 1e-3)
     follower.give(np.minimum(beside(-1.0), np.where(np.cos(BEARINGS) > 0.2, across, 4.0)))
     assert follower.asks("corner-ahead")
+
+
+def blinded(library: str, ranges) -> list[Drive | None]:
+    """The commands of a plan whose lidar gives these ranges (667,) from the 30th tick on, for a second."""
+    plan = compiled(library, "")
+    lines = "- {kind: wall, from: [-12, -0.1], to: [30, -0.1]}"
+    episode = Episode(loads(WORLD.format(x=0, y=1, heading=0, things=lines), "walls.yaml"), 0, plan.goals.period)
+    brain, told = PlanBrain(plan), []
+    for tick in range(66):
+        reading = episode.world.sense()
+        if tick >= 30:
+            reading = replace(reading, lidar=replace(reading.lidar, ranges=ranges))
+        command = brain.step(reading)
+        told.append(command.drive)
+        episode.world.step(command)
+    return told
+
+
+def scattered(count: int):
+    """So many beams that met something, here and there."""
+    chance, ranges = np.random.default_rng(0), np.full(667, 4.0)
+    ranges[chance.choice(667, count, replace=False)] = chance.uniform(0.5, 3.0, count)
+    return ranges
+
+
+BLIND = [scattered(count) for count in (0, 1, 2)]
+BLIND += [np.full(667, bad) for bad in (math.nan, math.inf, -math.inf, 0.02, 0.0, 1e300)]
+
+
+@pytest.mark.parametrize("library", ["wall-by-ransac", "wall-by-hough"])
+@pytest.mark.parametrize("ranges", BLIND, ids=[*"012", "nan", "inf", "-inf", "least", "zero", "huge"])
+def test_a_plan_that_sees_nothing_any_more_stands_at_once(library, ranges):
+    told = blinded(library, ranges)
+    assert told[29].speed > 0.1
+    assert all(drive == Drive(0.0, 0.0) for drive in told[34:])
+
+
+def test_nineteen_points_here_and_there_are_no_wall_to_go_on_along():
+    assert all(drive == Drive(0.0, 0.0) for drive in blinded("wall-by-ransac", scattered(19))[34:])
