@@ -123,7 +123,7 @@ class WallAndCorners(FittedWall):
     def _holds_on(self, points: Floats) -> bool:
         """Whether the few points are those of the place that the robot turns about."""
         off = np.hypot(points[:, 0] - self._contact[0], points[:, 1] - self._contact[1])
-        return self.mode in ("end", "corner") and np.count_nonzero(off <= self._here.corner.leap) >= FEW
+        return self.mode in ("end", "corner") and int(np.count_nonzero(off <= self._here.corner.leap)) >= FEW
 
     def _bar(self, least: float) -> None:
         """Where to go past what bars the way; it is turned about if that is far aside."""
