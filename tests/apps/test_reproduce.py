@@ -96,8 +96,9 @@ def test_the_rows_of_find_and_fetch_stand_in_their_order() -> None:
 def test_every_case_of_every_row_names_a_plan_and_a_scenario_that_can_be_run() -> None:
     for row in every_row():
         asked = [Asked(row, preset) for preset in row.presets]
-        names = [case.name for case in row.cases(4)]
-        assert len(names) == len(set(names)), row.name
+        for one in asked:
+            names = [case.name for case in row.cases_with(one.preset, 4)]
+            assert len(names) == len(set(names)), (row.name, one.preset)
         assert sum(len(batch.tasks) for batch in batches(asked, 4)) == sum(
             len(case.seeds) for one in asked for case in row.cases_with(one.preset, 4)
         )
