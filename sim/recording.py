@@ -37,7 +37,7 @@ from sim.viewing import View
 FORMAT = 2
 """Number of the layout of header and ticks; a reader refuses a later one. 2: readings and views beside the ticks."""
 
-CHUNK = 16 * 1024
+CHUNK = 128 * 1024
 """Bytes [uncompressed] that are closed and written together at most."""
 
 KEEP_S = 0.2

@@ -3,8 +3,8 @@
 Takes: a recording and a time, or a plan with percepts and a trace. Gives: `Moment`: the compiled plan, the atoms and
 registers of the tick, and what each output was before. Leaves alone: the answer; see explaining.py.
 
-The plan of a recording is compiled again from the text that stands in its header, with the texts that it includes. Its
-ticks are looked at from the one that is asked about backwards, until each output is seen with another value.
+The plan of a recording is compiled again from the text that stands in its header, with the texts that it includes. A
+tick says since when its outputs are so; where it does not, those before it are looked at, the latest first.
 """
 
 from __future__ import annotations
@@ -148,7 +148,8 @@ def _recorded(path: Path, at: float | None) -> Moment:
         raise InputError(f"say when: --at SECONDS ({lasts})" if at is None else f"--at {at:g}: {lasts}")
     atoms, registers = _bits(path, found.plan, compiled)
     percepts = _percepts(path, found.plan, compiled, atoms)
-    since, forced = _since(found, ticks), _forced(found.text, compiled)
+    since = _since_as_noted(path, found, period) or _since(found, ticks)
+    forced = _forced(found.text, compiled)
     return Moment(compiled, found.number, found.time, atoms, registers, found.shown, since, percepts, forced)
 
 
@@ -201,6 +202,31 @@ def _parts(text: str, part: str) -> tuple[str, Mapping[str, object] | None]:
         tick = json.loads(text)
     plan = tick.get("plan")
     return "", plan if isinstance(tick.get("t"), int | float) and isinstance(plan, Mapping) else None
+
+
+def _since_as_noted(path: Path, found: _Recorded, period: float) -> Mapping[str, Since] | None:
+    """Since when each output of a tick has its value, by the numbers that the tick itself gives; None where it gives
+    none, or others than the ticks that they lead to.
+    """
+    noted = found.plan.get("since")
+    numbers = noted if isinstance(noted, Mapping) else {}
+    known: dict[object, tuple[_Recorded, _Recorded | None]] = {}
+    since: dict[str, Since] = {}
+    for output, value in found.shown.items():
+        number = numbers.get(output)
+        if number not in known:
+            if not isinstance(number, int) or not 0 <= number <= found.number:
+                return None
+            back = _ticks_back(path, found.time - (found.number - number) * period + LATE)
+            known[number] = next(back, found), next(back, None)
+        then, before = known[number]
+        if then.number != number or then.shown.get(output) != value:
+            return None
+        if before is not None and (before.number != number - 1 or before.shown.get(output, "") == value):
+            return None
+        was = None if before is None else before.shown.get(output)
+        since[output] = Since(then.number, then.time, was, before is None or output not in before.shown)
+    return since
 
 
 def _since(found: _Recorded, before: Iterator[_Recorded]) -> dict[str, Since]:

@@ -38,6 +38,7 @@ class Trace:
         self._show = show
         self._numbers = numbers(ways)
         self._known: dict[tuple[Bits, Bits], tuple[TakenWay, str]] = {}
+        self._stood: dict[str, tuple[object, int]] = {}
 
     def way(self, decision: Decision) -> TakenWay:
         """The way that was taken."""
@@ -69,15 +70,17 @@ class Trace:
         return self._show(value) if is_value else term.text
 
     def note(self, tick: Tick[Any]) -> str:
-        """The plan's part of a recorded tick."""
+        """The plan's part of a recorded tick; asked of every tick in order, a tick 0 begins anew."""
         decision = tick.decision
         sent = {name: self._sent(term, tick.values[name]) for name, term in decision.sent.items()}
+        outputs = texts(decision.outputs)
         rest = {
             "inputs": _bits(decision.inputs),
             "registers": _bits(decision.registers),
             "hole": decision.hole,
-            "outputs": texts(decision.outputs),
+            "outputs": outputs,
             "sent": sent,
+            "since": self._since(tick.number, outputs, sent),
             "percepts": {text: tick.percepts[text] for text in self._numbers},
             "started": list(tick.started),
             "stopped": list(tick.stopped),
@@ -90,6 +93,16 @@ class Trace:
         if tick.shown:
             rest["shown"] = dict(tick.shown)
         return f'{_compact(rest)[:-1]},"way":{self._way(decision)[1]}}}'
+
+    def _since(self, number: int, outputs: Mapping[str, str | None], sent: Mapping[str, object]) -> Mapping[str, int]:
+        """Output -> the tick since which it sets the same, or is sent the same where the way leaves it open."""
+        stood = self._stood if number else {}
+        now = {name: sent[name] if value is None else value for name, value in outputs.items()}
+        self._stood = {
+            name: (value, stood[name][1] if name in stood and stood[name][0] == value else number)
+            for name, value in now.items()
+        }
+        return {name: since for name, (_, since) in self._stood.items()}
 
 
 def numbers(ways: Ways) -> tuple[str, ...]:

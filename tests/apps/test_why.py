@@ -204,6 +204,18 @@ def long(path: Path) -> Path:
     return path
 
 
+def otherwise(whole: Path, path: Path, part: str, becomes: object) -> Path:
+    """The same recording with a part of what was decided left out (None) or as something else."""
+    with Recorder(path, cast(Any, read(whole).header)) as recorder:
+        for tick in read(whole).ticks:
+            plan: Any = tick["plan"]
+            if plan is not None:
+                plan = {key: value for key, value in plan.items() if key != part}
+                plan |= {} if becomes is None else {part: becomes}
+            recorder.tick(cast(float, tick["t"]), {}, json.dumps(plan))
+    return path
+
+
 def test_the_numbers_behind_comparisons_stand_in_a_recording_and_are_told(tmp_path: Path) -> None:
     path = long(tmp_path / "run.mcap")
     said = run("why", path, "--at", "0").stdout
@@ -237,13 +249,7 @@ def test_numbers_are_told_with_as_many_digits_as_their_comparisons_need(tmp_path
 
 def test_a_recording_without_the_numbers_is_explained_as_before(tmp_path: Path) -> None:
     whole = long(tmp_path / "whole.mcap")
-    path = tmp_path / "old.mcap"
-    header: Any = read(whole).header
-    with Recorder(path, header) as recorder:
-        for tick in read(whole).ticks:
-            plan: Any = tick["plan"]
-            without = None if plan is None else {key: value for key, value in plan.items() if key != "percepts"}
-            recorder.tick(cast(float, tick["t"]), {}, json.dumps(without))
+    path = otherwise(whole, tmp_path / "old.mcap", "percepts", None)
     assert "  (< (distance) 2m) is false\n" in run("why", path, "--at", "0").stdout
     found = told("why", path, "--at", "0")
     assert found["percepts"] is None
@@ -263,8 +269,13 @@ def test_numbers_that_do_not_fit_what_was_decided_are_told(number: object, tmp_p
     assert "reads the plan in it otherwise" in wrong("why", record(tmp_path / "run.mcap", header, tick), "--at", "0")
 
 
-def test_since_when_is_what_one_finds_going_through_all_ticks(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "noted", ["as it is", None, {}, {"action": 99}, {"action": 3}, {"action": 0, "note": "0"}, [1, 2]]
+)
+def test_since_when_is_what_one_finds_going_through_all_ticks(tmp_path: Path, noted: object) -> None:
     path = long(tmp_path / "run.mcap")
+    if noted != "as it is":
+        path = otherwise(path, tmp_path / "otherwise.mcap", "since", noted)
     last: dict[str, str | None] = {}
     since: dict[str, dict[str, object]] = {}
     for tick in [*read(path).ticks][:-1]:
