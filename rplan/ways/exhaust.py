@@ -45,16 +45,16 @@ def count_situations(ways: Ways, guard: int) -> int:
 
 def count_ways(ways: Ways) -> int:
     """How many different ways are taken in some situation."""
-    return classes(ways, _every(ways), (1 << (1 << len(ways.atoms))) - 1)
+    return len(classes(ways, _every(ways), (1 << (1 << len(ways.atoms))) - 1))
 
 
-def classes(ways: Ways, values: Sequence[int], situations: int) -> int:
-    """Into how many classes the ways' signatures part these situations, given as bits."""
+def classes(ways: Ways, values: Sequence[int], situations: int) -> list[int]:
+    """The classes into which the ways' signatures part these situations, each given as bits."""
     parts = [part for part in [situations & ~values[ways.hole]] if part]
     for guard in dict.fromkeys(ways.signature()):
         split = (part for known in parts for part in (known & values[guard], known & ~values[guard]))
         parts = [part for part in split if part]
-    return len(parts)
+    return parts
 
 
 def _every(ways: Ways) -> list[int]:

@@ -7,7 +7,7 @@ one rule; what operators generate has no place of its own and is left out.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -145,9 +145,9 @@ def taken(reach: Reach, arm: Arm) -> bool | Undecided:
     return unknown
 
 
-def witness(reach: Reach, arm: Arm) -> Trace | None:
-    """The simplest trace whose last tick takes an arm; None if there is none, or it is not decided."""
-    ticks = [(tick, guard) for guard in arm.guards if isinstance(tick := reach.first_tick((guard, True)), int)]
+def witness(reach: Reach, guards: Iterable[int]) -> Trace | None:
+    """The simplest trace whose last tick has one of the guards; None if there is none, or it is not decided."""
+    ticks = [(tick, guard) for guard in guards if isinstance(tick := reach.first_tick((guard, True)), int)]
     if not ticks:
         return None
     trace = reach.trace((min(ticks)[1], True))

@@ -6,7 +6,7 @@ which is that in which z3 comes upon them, and ways that show only late in the m
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import z3
 
@@ -18,11 +18,11 @@ LATEST = 12
 """Ways of plans with memory are sought in so many ticks."""
 
 
-def taken_ways(ways: Ways, limit: int) -> Iterator[Trace]:
-    """A trace for each way that can be taken, at most `limit`."""
+def taken_ways(ways: Ways, limit: int, known: Sequence[Sequence[bool]] = ()) -> Iterator[Trace]:
+    """A trace for each way that can be taken, at most `limit`. known: signatures of ways that are not wanted."""
     found = 0
     guards = tuple(dict.fromkeys(ways.signature()))
-    seen: list[list[bool]] = []
+    seen: list[Sequence[bool]] = [*known]
     for tick in range(LATEST if ways.registers[: ways.driving] else 1):
         unrolling = Unrolling(ways, first=True)
         unrolling.solver.add(*unrolling.ask(tick, ((ways.hole, False),)), *unrolling.assumed(tick + 1))
@@ -37,7 +37,7 @@ def taken_ways(ways: Ways, limit: int) -> Iterator[Trace]:
             unrolling.solver.add(_other(literals, seen[-1]))
 
 
-def _other(literals: list[z3.BoolRef], way: list[bool]) -> z3.BoolRef:
+def _other(literals: list[z3.BoolRef], way: Sequence[bool]) -> z3.BoolRef:
     return z3.Or([z3.Not(one) if value else one for one, value in zip(literals, way, strict=True)])
 
 

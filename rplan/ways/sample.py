@@ -48,7 +48,7 @@ class Samples:
         for guard in dict.fromkeys((self._ways.hole, *self._ways.signature())):
             values[guard] = sum(seen[guard] << tick * self.runs for tick, (seen, _) in enumerate(self._seen))
         valid = sum(possible << tick * self.runs for tick, (_, possible) in enumerate(self._seen))
-        return classes(self._ways, values, valid)
+        return len(classes(self._ways, values, valid))
 
     def _answering(self, values: list[int], valid: int, question: Question) -> int:
         for guard, value in question:

@@ -242,8 +242,21 @@ def replay(ways: Ways, trace: Trace) -> Seen:
 
 def describe(trace: Trace, ways: Ways) -> str:
     """A trace in words: what holds, tick by tick where there are several; equal ticks in a row are said once."""
-    units = {term.text: term.type.unit for term in ways.goals.percepts() if term.type is not None}
-    said = [_say(witness, units) for witness in trace]
+    units = _units(ways)
+    return _by_tick([_say(witness, units) for witness in trace])
+
+
+def brief(trace: Trace, ways: Ways) -> str:
+    """A trace as percepts are given by hand, tick by tick where there are several: what is not named is false or 0."""
+    units = _units(ways)
+    return _by_tick([_given(witness, units) for witness in trace])
+
+
+def _units(ways: Ways) -> Mapping[str, str]:
+    return {term.text: term.type.unit for term in ways.goals.percepts() if term.type is not None}
+
+
+def _by_tick(said: Sequence[str]) -> str:
     if len(said) == 1:
         return said[0]
     lines, tick = [], 0
@@ -262,6 +275,15 @@ def _say(witness: Witness, units: Mapping[str, str]) -> str:
         for text, value in witness.items()
     ]
     return " and ".join(parts) if parts else "always"
+
+
+def _given(witness: Witness, units: Mapping[str, str]) -> str:
+    parts = [
+        _key(text) if isinstance(value, bool) else f"{_key(text)}={canonical_number(value, units.get(text, ''))}"
+        for text, value in witness.items()
+        if value
+    ]
+    return ", ".join(parts) or "nothing"
 
 
 def lines(trace: Trace) -> tuple[str, ...]:

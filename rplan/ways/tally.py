@@ -1,41 +1,22 @@
 """What of a plan was reached by the ticks that were seen: ways, branches, and conditions (MC/DC).
 
-Takes: `Ways`, and inputs and registers of ticks. Gives: `Reached`: how often each arm of a fork was taken, what can
-never be, and for each part of a condition whether it was seen to decide both as true and as false. Leaves alone: where
-ticks come from, and how it is shown.
+Takes: `Asked` (the ways of a plan and the parts of its conditions), and inputs and registers of ticks. Gives:
+`Reached`: how often each arm of a fork was taken, for each part of a condition whether it was seen to decide both as
+true and as false (parts.py), and what of it can never be. Leaves alone: where ticks come from, and how it is shown.
 
-A part of a condition is an atom, or a form with memory. It decides in a tick where the condition would come out
-otherwise if only it were the other way (masking MC/DC; Chilenski 2001, DOT/FAA/AR-01/18); both values must be seen to
-decide. All ticks are looked at together, one bit a tick.
+All ticks are looked at together, one bit a tick.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import dataclass
 
-from rplan.goals.condition import (
-    AllOf,
-    AnyOf,
-    Comparison,
-    Condition,
-    Constant,
-    Memory,
-    Named,
-    Not,
-    OutputIs,
-    Percept,
-    print_condition,
-)
-from rplan.goals.goal import If
-from rplan.lang.source import Span
 from rplan.ways.exhaust import classes, evaluate_many
-from rplan.ways.forks import Arm, Fork, forks, taken
-from rplan.ways.guards import Guards
-from rplan.ways.memory import Registers
+from rplan.ways.forks import Arm, Fork
+from rplan.ways.parts import Asked, Part
 from rplan.ways.reach import Reach
 from rplan.ways.reduce import Ways
-from rplan.ways.situations import Undecided
 
 Bits = tuple[bool, ...]
 Ticks = dict[tuple[Bits, Bits], int]
@@ -58,26 +39,45 @@ class ForkReached:
 
 
 @dataclass(frozen=True, slots=True)
-class PartReached:
-    """A part of the condition at `span`; values for which it was seen to decide."""
+class ValueReached:
+    """One value of a part of a condition. seen: it was seen to decide so; never: proven that it cannot.
 
-    text: str
-    span: Span
-    rule: str
-    as_true: bool
-    as_false: bool
+    guards: it decides so where any of them holds.
+    """
+
+    value: bool
+    guards: tuple[int, ...]
+    seen: bool
+    never: bool
+
+    @property
+    def word(self) -> str:
+        return "true" if self.value else "false"
+
+
+@dataclass(frozen=True, slots=True)
+class PartReached:
+    """A part of a condition and its two values, true first."""
+
+    part: Part
+    values: tuple[ValueReached, ValueReached]
 
     @property
     def missing(self) -> str:
-        """The values for which it was not seen to decide, in words; empty if there is none."""
-        return " or ".join(word for word, seen in (("true", self.as_true), ("false", self.as_false)) if not seen)
+        """The values for which it was not seen to decide though it may, in words; empty if there is none."""
+        return " or ".join(one.word for one in self.values if not one.seen and not one.never)
+
+    @property
+    def never(self) -> str:
+        """The values for which it cannot decide, in words; empty if there is none."""
+        return " or ".join(one.word for one in self.values if one.never)
 
 
 @dataclass(frozen=True, slots=True)
 class Reached:
-    """ways: so many different ones were taken; ticks: seen, holes among them."""
+    """ways: the signatures of those that were taken; ticks: so many were seen, holes among them."""
 
-    ways: int
+    ways: tuple[Bits, ...]
     ticks: int
     forks: tuple[ForkReached, ...]
     parts: tuple[PartReached, ...]
@@ -90,23 +90,36 @@ class Reached:
 
     @property
     def conditions(self) -> tuple[int, int]:
-        """Values of parts that were seen to decide, of all (two a part)."""
-        return sum(part.as_true + part.as_false for part in self.parts), 2 * len(self.parts)
+        """Values of parts that were seen to decide, and those that can (two a part at most)."""
+        every = [one for part in self.parts for one in part.values if not one.never]
+        return sum(one.seen for one in every), len(every)
 
 
-def reached(ways: Ways, ticks: Ticks, reach: Reach | None = None) -> Reached:
-    """What these ticks reached. reach: to prove what can never be; without it nothing is said to be never."""
-    table = _Table(ways, ticks)
+def reached(asked: Asked, ticks: Ticks, reach: Reach | None = None) -> Reached:
+    """What these ticks reached. reach: of the same ways, to prove what can never be; without it nothing is said so."""
+    table = _Table(asked.ways, ticks)
     found = tuple(
-        ForkReached(fork, tuple(_arm(arm, table.times(arm.guards), reach) for arm in fork.arms)) for fork in forks(ways)
+        ForkReached(fork, tuple(_arm(arm, table.times(arm.guards), reach) for arm in fork.arms)) for fork in asked.forks
     )
-    seen = classes(ways, table.values, table.every & ~table.values[ways.hole]) if ticks else 0
-    return Reached(seen, sum(ticks.values()), found, tuple(_parts(ways, table, found)))
+    parts = tuple(
+        PartReached(part, (_value(table, reach, True, part.as_true), _value(table, reach, False, part.as_false)))
+        for part in asked.parts
+    )
+    return Reached(tuple(table.signatures()), sum(ticks.values()), found, parts)
 
 
 def _arm(arm: Arm, times: int, reach: Reach | None) -> ArmReached:
-    answer: bool | Undecided = True if times or reach is None else taken(reach, arm)
-    return ArmReached(arm, times, answer is False)
+    return ArmReached(arm, times, not times and _never(arm.guards, reach))
+
+
+def _value(table: _Table, reach: Reach | None, value: bool, guards: tuple[int, ...]) -> ValueReached:
+    seen = bool(table.where(guards))
+    return ValueReached(value, guards, seen, not seen and _never(guards, reach))
+
+
+def _never(guards: Iterable[int], reach: Reach | None) -> bool:
+    """Proven that none of the guards can hold; what is not decided may be."""
+    return reach is not None and all(reach.possible((guard, True)) is False for guard in guards)
 
 
 class _Table:
@@ -115,64 +128,29 @@ class _Table:
     def __init__(self, ways: Ways, ticks: Ticks) -> None:
         self.ways = ways
         self.counts = list(ticks.values())
-        self.every = (1 << len(ticks)) - 1
-        self.guards = Guards(list(ways.guards.nodes), dict(ways.guards.index))
-        self._atoms = {atom.text: number for number, atom in enumerate(ways.atoms)}
-        self._again = _Again(self.guards, self.guard_of, known=_numbers(ways))
-        asked = [node.goal.condition for node in ways.layout.nodes if isinstance(node.goal, If)]
-        for condition in asked:
-            for part in parts_of(condition):
-                self.guard_of(part)
         inputs = [inputs for inputs, _ in ticks]
         registers = [registers for _, registers in ticks]
         self.values = evaluate_many(
-            self.guards, _columns(inputs, len(ways.atoms)), len(ticks), _columns(registers, len(ways.registers))
+            ways.guards, _columns(inputs, len(ways.atoms)), len(ticks), _columns(registers, len(ways.registers))
         )
 
-    def times(self, guards: Iterable[int]) -> int:
-        """In how many ticks any of the guards holds."""
+    def where(self, guards: Iterable[int]) -> int:
+        """The ticks in which any of the guards holds."""
         seen = 0
         for guard in guards:
             seen |= self.values[guard]
+        return seen
+
+    def times(self, guards: Iterable[int]) -> int:
+        """In how many ticks any of the guards holds."""
+        seen = self.where(guards)
         return sum(count for number, count in enumerate(self.counts) if seen >> number & 1)
 
-    def value(self, condition: Condition) -> int:
-        """Where a condition holds."""
-        return self.values[self.guard_of(condition)]
-
-    def guard_of(self, condition: Condition) -> int:
-        match condition:
-            case Constant(value):
-                return int(value)
-            case Percept(text) | Comparison(text):
-                return self.guards.atom(self._atoms[text])
-            case Memory():
-                return self._again.value(condition)
-            case Named(name):
-                return self.guard_of(self.ways.goals.definitions[name])
-            case Not(inner):
-                return self.guards.negation(self.guard_of(inner))
-            case AllOf(parts):
-                return self.guards.all_of(map(self.guard_of, parts))
-            case AnyOf(parts):
-                return self.guards.any_of(map(self.guard_of, parts))
-            case OutputIs():
-                raise ValueError("only properties ask for outputs")
-
-
-@dataclass(slots=True)
-class _Again(Registers):
-    """Finds the registers of a plan again by their names."""
-
-    known: dict[str, int] = field(default_factory=dict)
-
-    def _new(self, name: str, initial: bool) -> tuple[int, int]:  # noqa: ARG002
-        number = self.known[name]
-        return number, self.guards.register(number)
-
-
-def _numbers(ways: Ways) -> dict[str, int]:
-    return {register.name: number for number, register in enumerate(ways.registers)}
+    def signatures(self) -> list[Bits]:
+        """The different ways that were taken, in the order in which they were seen."""
+        guards = tuple(dict.fromkeys(self.ways.signature()))
+        first = sorted(ticks & -ticks for ticks in classes(self.ways, self.values, (1 << len(self.counts)) - 1))
+        return [tuple(bool(self.values[guard] & tick) for guard in guards) for tick in first]
 
 
 def _columns(rows: list[Bits], width: int) -> list[int]:
@@ -183,70 +161,3 @@ def _columns(rows: list[Bits], width: int) -> list[int]:
             if bit:
                 columns[place] |= 1 << number
     return columns
-
-
-# --- conditions ---
-
-
-def parts_of(condition: Condition) -> Iterator[Condition]:
-    """The parts of a condition that may decide it, in textual order, once each."""
-    seen: dict[str, Condition] = {}
-    stack = [condition]
-    while stack:
-        here = stack.pop()
-        match here:
-            case Not(inner):
-                stack.append(inner)
-            case AllOf(parts) | AnyOf(parts):
-                stack += reversed(parts)
-            case Constant():
-                pass
-            case _:
-                seen.setdefault(print_condition(here), here)
-    yield from seen.values()
-
-
-def _parts(ways: Ways, table: _Table, found: tuple[ForkReached, ...]) -> Iterator[PartReached]:
-    for fork in (one.fork for one in found if one.fork.kind == "if"):
-        seen: dict[str, tuple[bool, bool]] = {}
-        for number in fork.nodes:
-            goal = ways.layout.nodes[number].goal
-            assert isinstance(goal, If)
-            asked = table.values[ways.reached[number]]
-            for place, part in enumerate(parts_of(goal.condition)):
-                name = print_condition(part)
-                key = name if len(fork.nodes) == 1 else f"{place}"
-                decides = asked & _decides(table, goal.condition, name)
-                value = table.value(part)
-                before = seen.get(key, (False, False))
-                seen[key] = before[0] or bool(decides & value), before[1] or bool(decides & ~value)
-        first = ways.layout.nodes[fork.nodes[0]].goal
-        assert isinstance(first, If)
-        for part, (as_true, as_false) in zip(parts_of(first.condition), seen.values(), strict=False):
-            yield PartReached(print_condition(part), fork.span, fork.rule, as_true, as_false)
-
-
-def _decides(table: _Table, condition: Condition, part: str) -> int:
-    """Where the condition would come out otherwise if only this part were the other way."""
-    return _with(table, condition, part, table.every) ^ _with(table, condition, part, 0)
-
-
-def _with(table: _Table, condition: Condition, part: str, value: int) -> int:
-    """Where a condition holds if a part of it has this value."""
-    if print_condition(condition) == part:
-        return value
-    match condition:
-        case Not(inner):
-            return table.every ^ _with(table, inner, part, value)
-        case AllOf(parts):
-            found = table.every
-            for one in parts:
-                found &= _with(table, one, part, value)
-            return found
-        case AnyOf(parts):
-            found = 0
-            for one in parts:
-                found |= _with(table, one, part, value)
-            return found
-        case _:
-            return table.value(condition)

@@ -6,12 +6,14 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+import z3
 
 from rplan.apps import pytest_plugin
-from rplan.apps.pytest_plugin.coverage import ways_text
+from rplan.apps.pytest_plugin.coverage import MOST_ON_PAGE, Found, sections
 from rplan.apps.pytest_plugin.shelf import Plan, Shelf
 from rplan.apps.testing import PlanUnderTest
-from rplan.ways.tally import reached
+from rplan.apps.wiring import decider
+from rplan.ways.tally import PartReached, Reached
 
 pytest_plugins = ["pytester"]
 
@@ -43,8 +45,13 @@ def opened(folder: Path, text: str) -> Plan:
     return Shelf().plan(path)
 
 
-def seen(plan: Plan):
-    return reached(plan.compiled.ways, plan.ticks, plan.reach)
+def seen(plan: Plan) -> Reached:
+    return plan.reached()
+
+
+def decided(part: PartReached) -> tuple[bool, bool]:
+    """As true, as false."""
+    return part.values[0].seen, part.values[1].seen
 
 
 def under_test(plan: Plan) -> PlanUnderTest:
@@ -56,20 +63,20 @@ def under_test(plan: Plan) -> PlanUnderTest:
 
 def test_nothing_is_reached_without_a_tick(plan: Plan) -> None:
     none = seen(plan)
-    assert (none.ways, none.ticks, none.arms, none.conditions) == (0, 0, (0, 4), (0, 8))
+    assert (none.ways, none.ticks, none.arms, none.conditions) == ((), 0, (0, 4), (0, 8))
 
 
 def test_branches_are_counted_by_tick(plan: Plan) -> None:
     under_test(plan).given("near").then().then("slow")
     found = seen(plan)
-    assert (found.ways, found.ticks, found.arms) == (2, 3, (3, 4))
+    assert (len(found.ways), found.ticks, found.arms) == (2, 3, (3, 4))
     times = [arm.times for fork in found.forks for arm in fork.arms]
     assert times == [3, 2, 1, 1, 0]
 
 
 def test_a_part_counts_where_it_alone_decides(plan: Plan) -> None:
     under_test(plan).given("near", "lost")
-    parts = {(p.span.line, p.text): (p.as_true, p.as_false) for p in seen(plan).parts}
+    parts = {(p.part.span.line, p.part.text): decided(p) for p in seen(plan).parts}
     assert parts == {
         (10, "(near)"): (False, False),
         (10, "(lost)"): (False, False),
@@ -96,7 +103,7 @@ def test_forms_with_memory_are_parts(tmp_path: Path) -> None:
         plan = opened(tmp_path, PLAN.replace("(and (bad) (not (slow)))", f"(and {form} (not (slow)))"))
         under_test(plan).given().then("near").then().then("not near").then().then().then("lost").then("not lost")
         under_test(plan).given("lost", "near").then("not lost").then("not near", "lost").then()
-        parts = {p.text.partition(" ")[0]: (p.as_true, p.as_false) for p in seen(plan).parts if p.span.line == 10}
+        parts = {p.part.text.partition(" ")[0]: decided(p) for p in seen(plan).parts if p.part.span.line == 10}
         assert parts[form.partition(" ")[0]] == (True, True) or "bad" in form, form
 
 
@@ -104,7 +111,7 @@ def test_a_condition_that_asks_its_own_past_is_a_part(tmp_path: Path) -> None:
     text = PLAN.replace("(or (near) (lost))", "(or (near) (delay false (bad)))")
     plan = opened(tmp_path, text)
     under_test(plan).given().then("near").then("not near").then("slow")
-    parts = {p.text: (p.as_true, p.as_false) for p in seen(plan).parts if p.span.line == 10}
+    parts = {p.part.text: decided(p) for p in seen(plan).parts if p.part.span.line == 10}
     assert parts == {"(near)": (True, True), "(delay false (bad))": (True, True), "(slow)": (True, True)}
 
 
@@ -122,6 +129,70 @@ def test_a_branch_that_can_never_be_taken_does_not_count_against_the_tests(tmp_p
     ]
 
 
+def test_a_part_that_can_never_decide_does_not_count_against_the_tests(tmp_path: Path) -> None:
+    text = PLAN.replace("(if (slow) (do action (rest))", "(if (and (slow) (not (lost))) (do action (rest))")
+    text = text.replace("(or (near) (lost))", "(or (near) (and (lost) (not (near)) (near)))")
+    plan = opened(tmp_path, text)
+    under_test(plan).given().then("near").then("slow").then("lost").then("not near").then("not lost")
+    found = seen(plan)
+    never = [(part.part.text, part.part.span.line, part.never) for part in found.parts if part.never]
+    assert never == [("(lost)", 10, "true or false")]
+    assert (found.arms, found.conditions) == ((4, 4), (8, 8))
+
+
+def test_a_part_that_numbers_rule_out_cannot_be_reached(tmp_path: Path) -> None:
+    text = PLAN.replace("(declare (slow) bool", "(declare (d) (number m)").replace("(not (slow))", "(< (d) 2m)")
+    plan = opened(tmp_path, text.replace("(if (slow)", "(if (and (< (d) 1m) (< (d) 2m))"))
+    found = seen(plan)
+    assert [(p.part.text, p.part.span.line, p.never) for p in found.parts if p.never] == [("(< (d) 2m)", 12, "false")]
+    assert found.conditions == (0, 9)
+
+
+def test_a_part_that_is_not_decided_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    plan = opened(tmp_path, PLAN.replace("(if (slow)", "(if (and (slow) (not (slow)))"))
+    assert seen(plan).conditions == (0, 6)
+    undecided = opened(tmp_path, PLAN.replace("(if (slow)", "(if (and (slow) (not (slow)))"))
+    monkeypatch.setattr(z3.Solver, "check", lambda *_: z3.unknown)
+    assert seen(undecided).conditions == (0, 8)
+
+
+@pytest.mark.parametrize("held", ["(slow)", "(held-for 0.3s (slow))"])
+def test_every_situation_that_is_said_to_reach_something_does(tmp_path: Path, held: str) -> None:
+    plan = opened(tmp_path, PLAN.replace("(if (slow)", f"(if {held}"))
+    under_test(plan).given()
+    found = Found(plan, seen(plan), MOST_ON_PAGE)
+    for one in (*found.branches, *found.conditions, *found.ways):
+        assert one.trace is not None
+        fresh = decider(plan.compiled)
+        for witness in one.trace:
+            plan.watch(fresh.tick(witness))
+    after = Found(plan, seen(plan), MOST_ON_PAGE)
+    assert (after.branches, after.conditions, after.ways) == ((), (), ())
+    for some, every in (after.seen.arms, after.seen.conditions, (len(after.seen.ways), after.every_way)):
+        assert some == every > 0
+
+
+def test_what_is_missing_of_a_plan_that_comes_with_rplan_is_reached_by_what_is_said() -> None:
+    plan = Shelf().plan(Path(__file__).parents[2] / "plans" / "patrol" / "patrol.rplan")
+    under_test(plan).given()
+    before = Found(plan, seen(plan), MOST_ON_PAGE)
+    for one in (*before.branches, *before.conditions, *before.ways):
+        assert one.trace is not None
+        fresh = decider(plan.compiled)
+        for witness in one.trace:
+            plan.watch(fresh.tick(witness))
+    assert list(sections(Found(plan, seen(plan), MOST_ON_PAGE))) == []
+
+
+def test_a_large_plan_is_told_its_branches_without_situations(plan: Plan, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("rplan.ways.missing.LARGE", 1)
+    under_test(plan).given("near")
+    found = Found(plan, seen(plan), MOST_ON_PAGE)
+    assert [(one.text, one.trace) for one in found.branches][-1] == ("(not (slow)) → (do anything)", None)
+    assert (found.ways, found.count) == ((), "1/3")
+    assert [section.title for section in sections(found)] == ["branches not taken", "never decided so"]
+
+
 def test_a_rule_in_two_places_is_one_rule(tmp_path: Path) -> None:
     text = PLAN.replace("(goalem (maint distance))", "(goalem (if (lost) (maint distance) (maint distance)))")
     plan = opened(tmp_path, text)
@@ -137,15 +208,15 @@ def test_a_rule_with_arguments_counts_its_parts_together(tmp_path: Path) -> None
     text += "(defgoalr (ach go ?where) (when (and (free ?where) (slow)) (do side ?where)))"
     plan = opened(tmp_path, text)
     under_test(plan).given("(free left)", "slow").then("not slow").then("slow", "not (free left)")
-    parts = {p.text: (p.as_true, p.as_false) for p in seen(plan).parts if p.rule == "(ach go ?where)"}
+    parts = {p.part.text: decided(p) for p in seen(plan).parts if p.part.rule == "(ach go ?where)"}
     assert list(parts.values()) == [(True, True), (True, True)]
 
 
 def test_ways_are_counted_in_full_where_all_can_be_tried(plan: Plan, tmp_path: Path) -> None:
     under_test(plan).given("near")
-    assert ways_text(plan, seen(plan)) == "1/3"
+    assert Found(plan, seen(plan), MOST_ON_PAGE).count == "1/3"
     other = opened(tmp_path, PLAN.replace("(slow)))", "(held-for 1s (slow))))"))
-    assert ways_text(other, seen(other)).startswith("0/≥")
+    assert Found(other, seen(other), MOST_ON_PAGE).count.startswith("0/≥")
 
 
 # --- under pytest -----------------------------------------------------------------------------------
@@ -172,8 +243,18 @@ def test_deftests_golden_ticks_and_fixtures_are_counted_together(run) -> None:
             "*- coverage of plans -*",
             "plan  *ticks * ways * branches * conditions",
             "guard.rplan        4 * 2/3 * 3/4   75% * 3/8   37%",
-            "  12: (maint distance): not taken: (not (slow)) → (do anything)",
-            "  10: (maint distance): (near) never decided as false",
+            "  ways not taken",
+            "    sets nothing by (maint distance)",
+            "      given nothing",
+            "  branches not taken",
+            "    12: (maint distance): (not (slow)) → (do anything)",
+            "      given nothing",
+            "  never decided so",
+            "    10: (maint distance): (near) as false",
+            "      given nothing",
+            "    10: (maint distance): (lost) as true",
+            "      given lost",
+            "    … and 1 more",
         ]
     )
 
@@ -192,15 +273,23 @@ def test_pages_are_written_with_what_was_not_taken(pytester: pytest.Pytester, ru
     assert '<span class="yes">(do action (flee))</span>' in page
     assert '<span class="no">(do anything)</span>' in page
     assert "(near) never decided as false" in page
+    assert "<li>12: (maint distance): (not (slow)) → (do anything)<small>given nothing</small></li>" in page
+    assert "<h2>branches not taken <span>1</span></h2>" in page
     assert "http" not in page
 
 
 def test_what_is_never_is_painted_so(pytester: pytest.Pytester, run) -> None:
     text = PLAN.replace("(if (slow)", "(if (and (slow) (not (slow)))")
     (pytester.path / "guard.rplan").write_text(text, encoding="utf-8")
-    run("--rplan-coverage=html:pages")
+    result = run("--rplan-coverage=html:pages")
     page = (pytester.path / "pages" / "guard.html").read_text(encoding="utf-8")
     assert '<span class="never">(do action (rest))</span>' in page
+    assert '<span class="chip never">(slow) cannot decide as true or false</span>' in page
+    cannot = "cannot be reached, and does not count"
+    assert cannot in page
+    result.stdout.fnmatch_lines(
+        [f"  {cannot}", "    12: (maint distance): (and (slow) (not (slow))) → *", "    12: *: (slow) as true or false"]
+    )
 
 
 def test_plans_of_one_name_get_a_page_each(pytester: pytest.Pytester, run) -> None:
@@ -208,7 +297,7 @@ def test_plans_of_one_name_get_a_page_each(pytester: pytest.Pytester, run) -> No
     (pytester.path / "b" / "guard.rplan").write_text(PLAN, encoding="utf-8")
     result = run("--rplan", "--rplan-coverage=html:pages")
     result.stdout.fnmatch_lines(["b/guard.rplan        0 * 0/3 * 0/4    0% *", "guard.rplan          4 * 2/3 *"])
-    result.stdout.no_fnmatch_line("*not taken: (slow)*")
+    result.stdout.no_fnmatch_line("*: (slow) →*")
     assert sorted(path.name for path in (pytester.path / "pages").iterdir()) == ["guard-2.html", "guard.html"]
 
 

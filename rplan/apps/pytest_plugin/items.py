@@ -160,7 +160,7 @@ def _when(plan: Plan, arm: Any, answer: bool | Undecided) -> str:
     if answer is True and plan.explained > MOST_EXPLAINED:
         return "taken"
     if answer is True:
-        trace = witness(plan.reach, arm)
+        trace = witness(plan.reach, arm.guards)
         return "taken" if trace is None else f"taken when {describe(trace, plan.compiled.ways)}"
     return "can never be taken" if answer is False else "could not be decided"
 

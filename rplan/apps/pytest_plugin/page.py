@@ -1,12 +1,14 @@
-"""Coverage of one plan as a page: its text, what was taken of it, and what decided.
+"""Coverage of one plan as a page: its text, what was taken of it, what decided, and what is missing.
 
-Takes: a compiled plan and what was reached of it. Gives: one HTML text without anything from outside, light and dark.
+Takes: a compiled plan, what was reached of it, and what was not in words. Gives: one HTML text without anything from
+outside, light and dark.
 Leaves alone: where it is written.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from html import escape
 from itertools import groupby
 from pathlib import Path
@@ -46,6 +48,10 @@ tr:first-child td { padding-top: .5rem } tr:last-child td { padding-bottom: .5re
 .swatch.part { background: var(--part); }
 .chip.yes { color: var(--yes-ink) } .chip.no { color: var(--no-ink) } .chip.never { color: var(--never-ink) }
 .chip.part { background: var(--part); color: var(--part-ink); }
+h2 { font-size: 1.05rem; margin: 1.6rem 0 .5rem; } h2 span { color: var(--faint); font-weight: normal; }
+ul { margin: 0; padding: .6rem .9rem; list-style: none; background: var(--card); border: 1px solid var(--line);
+  border-radius: .6rem; font: 13px/1.6 ui-monospace, Menlo, Consolas, monospace; overflow-wrap: anywhere; }
+li small { display: block; font-size: 12px; color: var(--faint); padding-left: 2ch; }
 """
 
 KEY = (
@@ -56,7 +62,18 @@ KEY = (
 )
 
 
-def page(compiled: Compiled, seen: Reached, ways: str) -> str:
+@dataclass(frozen=True, slots=True)
+class Section:
+    """What was not reached of one kind. lines: what, and what is to be perceived for it (else false or 0), "" where
+    that is not known; count: so many there are, those that are not listed among them.
+    """
+
+    title: str
+    lines: Sequence[tuple[str, str]]
+    count: int
+
+
+def page(compiled: Compiled, seen: Reached, ways: str, missing: Sequence[Section]) -> str:
     """The page of a plan; ways: how many were taken, of how many."""
     name = escape(compiled.goals.name)
     figures = "".join(_figures(seen, ways))
@@ -68,8 +85,18 @@ def page(compiled: Compiled, seen: Reached, ways: str) -> str:
         f"<title>{name}: coverage</title><style>{STYLE}</style></head><body><main>"
         f"<h1>{name}</h1><p>{escape(Path(compiled.source.name).name)}: {escape(compiled.goals.doc)}</p>"
         f'<div class="figures">{figures}</div><div class="key">{key}</div>'
-        f'<div class="text"><table>{rows}</table></div></main></body></html>\n'
+        f'<div class="text"><table>{rows}</table></div>{"".join(map(_section, missing))}</main></body></html>\n'
     )
+
+
+def _section(section: Section) -> str:
+    items = "".join(
+        f"<li>{escape(text)}{f'<small>given {escape(given)}</small>' if given else ''}</li>"
+        for text, given in section.lines
+    )
+    more = section.count - len(section.lines)
+    rest = f"<li>… and {more} more</li>" if more else ""
+    return f"<h2>{escape(section.title)} <span>{section.count}</span></h2><ul>{items}{rest}</ul>"
 
 
 def _figures(seen: Reached, ways: str) -> Iterator[str]:
@@ -140,7 +167,7 @@ def _marked(line: str, painted: Sequence[str]) -> str:
 
 
 def _chips(number: int, file: str, seen: Reached) -> Iterator[str]:
-    """What is to be said below a line of what was asked there: branches not taken, and parts that never decided."""
+    """What is to be said below a line: what was not taken, or never decided, where it was asked; what cannot be."""
     asked = [fork for fork in seen.forks if any(arm.times for arm in fork.arms)]
     spans = [fork.fork.span for fork in asked]
     for fork in asked:
@@ -149,9 +176,14 @@ def _chips(number: int, file: str, seen: Reached) -> Iterator[str]:
                 says = "never: " if arm.never else "not taken: "
                 yield f'<span class="chip {_kind(0, arm.never)}">{says}{escape(arm.arm.text)}</span>'
     for part in seen.parts:
-        if part.missing and part.span in spans and (part.span.file, part.span.line) == (file, number):
-            yield _part_chip(part)
+        span = part.part.span
+        if (span.file, span.line) == (file, number):
+            yield from _part_chips(part, asked=span in spans)
 
 
-def _part_chip(part: PartReached) -> str:
-    return f'<span class="chip part">{escape(part.text)} never decided as {part.missing}</span>'
+def _part_chips(part: PartReached, *, asked: bool) -> Iterator[str]:
+    text = escape(part.part.text)
+    if asked and part.missing:
+        yield f'<span class="chip part">{text} never decided as {part.missing}</span>'
+    if part.never:
+        yield f'<span class="chip never">{text} cannot decide as {part.never}</span>'

@@ -20,8 +20,9 @@ from rplan.lang.source import Span
 from rplan.runtime.tick import Decision
 from rplan.ways.checks.branches import check_branches
 from rplan.ways.forks import Fork, forks
+from rplan.ways.parts import Asked, asked
 from rplan.ways.reach import Reach
-from rplan.ways.tally import Bits, Ticks
+from rplan.ways.tally import Bits, Reached, Ticks, reached
 
 
 @dataclass
@@ -43,6 +44,20 @@ class Plan:
     @cached_property
     def reach(self) -> Reach:
         return Reach(self.compiled.ways)
+
+    @cached_property
+    def asked(self) -> Asked:
+        """The parts of its conditions."""
+        return asked(self.compiled.ways)
+
+    @cached_property
+    def part_reach(self) -> Reach:
+        """As `reach`, also of the parts of its conditions."""
+        return Reach(self.asked.ways)
+
+    def reached(self) -> Reached:
+        """What the ticks that were seen reached of it."""
+        return reached(self.asked, self.ticks, self.part_reach)
 
     @cached_property
     def forks(self) -> tuple[Fork, ...]:
