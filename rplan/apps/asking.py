@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from rplan.apps import talk
-from rplan.apps.commands.tick import Keys
+from rplan.apps.doing.tick import Keys
 from rplan.apps.files import InputError, plan_file, unreadable
 from rplan.apps.wiring import compile_source, decider
 from rplan.driver import Compiled

@@ -1,7 +1,7 @@
 """A plan drives a robot through a world, and what is to be said of it afterwards.
 
 Takes: a compiled plan, a scenario, a seed. Gives: a `Run`: the judge's verdict, ticks and switches of each competence,
-and for each switch what made it. Leaves alone: how it is shown; see commands/simulate.py.
+and for each switch what made it. Leaves alone: how it is shown; see doing/simulate.py.
 """
 
 from __future__ import annotations

@@ -54,6 +54,7 @@ def compiled(
 
 
 KEY = "rplan.libraries"
+FILES = "rplan.library_files"
 
 
 def with_libraries(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -64,6 +65,7 @@ def with_libraries(command: Callable[..., Any]) -> Callable[..., Any]:
 
         try:
             context.meta[KEY] = catalogue(files)
+            context.meta[FILES] = tuple(file.resolve() for file in files)
         except LibraryError as error:
             raise InputError(str(error)) from None
 
@@ -78,6 +80,12 @@ def with_libraries(command: Callable[..., Any]) -> Callable[..., Any]:
 def libraries() -> Catalogue:
     """Every library that there is for the command that runs."""
     found: Catalogue = click.get_current_context().meta[KEY]
+    return found
+
+
+def library_files() -> tuple[Path, ...]:
+    """The files that were given with `--library`, from the root."""
+    found: tuple[Path, ...] = click.get_current_context().meta[FILES]
     return found
 
 

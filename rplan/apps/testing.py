@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Self, TypeVar
 
-from rplan.apps.commands.test import OPEN
+from rplan.apps.doing.test import OPEN
 from rplan.apps.libraries import Catalogue
 from rplan.apps.simulation import load_world
 from rplan.apps.trying import (

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from difflib import ndiff
 from pathlib import Path
 
-from rplan.apps.commands.test import HOLE, NO_HOLE, OPEN
+from rplan.apps.doing.test import HOLE, NO_HOLE, OPEN
 from rplan.driver import Compiled
 from rplan.goals.goal import Trial, TrialStep
 from rplan.lang.suggest import close

@@ -1,7 +1,7 @@
 """Tests of a plan alone, with their names looked up and their types checked.
 
 Takes: a `Plan`, its scope and its outputs. Gives: `Trial`s: percepts and outputs by canonical text. Leaves alone:
-running them; see rplan/apps/commands/test.py.
+running them; see rplan/apps/doing/test.py.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Plans with one slip each: what a test of the plan should notice.
 
 Takes: a `Plan` (syntax). Gives: `Mutant`s in textual order, each a whole plan with one change, its place and the change
-in words; and whether two plans can be told apart. Leaves alone: which tests notice; see rplan/apps/commands/mutate.py.
+in words; and whether two plans can be told apart. Leaves alone: which tests notice; see rplan/apps/doing/mutate.py.
 
 Changed are the bodies of rules, the top goal, named conditions and preconditions of operators: a part of a condition
 negated, `and` and `or` exchanged, a comparison or a number shifted, branches swapped or dropped, members dropped or

@@ -96,7 +96,7 @@ def test_what_cannot_be_imported_exits_with_2_and_one_line(tmp_path: Path) -> No
 
 
 def test_a_scenario_that_would_be_unsound_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("rplan.apps.commands.import_.text_of", lambda imported: "name: x\n")
+    monkeypatch.setattr("rplan.apps.doing.import_.text_of", lambda imported: "name: x\n")
     result = run(str(SAMPLES / "small.map"))
     assert result.exit_code == 2
     assert "small.map: the scenario that comes of it is unsound: small.map:1:1: bounds: this key is missing" in (

@@ -11,7 +11,12 @@ from pathlib import Path
 import pytest
 
 from rplan.apps import cli
+from rplan.apps.commands import import_, map, reproduce
+from rplan.apps.drawing import map as drawn
+from rplan.apps.reproduce.row import PRESETS
 from rplan.lang.diagnostic import InternalError
+from sim.robots.models import MODELS
+from sim.scenarios import importers
 
 Ends = Callable[[Exception], tuple[int, str]]
 PLANS = Path(__file__).parents[2] / "plans"
@@ -140,3 +145,29 @@ def test_each_line_of_a_tick_is_answered_before_the_next_is_given(tmp_path: Path
         process.stdin.close()
         process.stderr.read()
     assert process.returncode == 0
+
+
+# --- help ---------------------------------------------------------------------------------------------
+
+HEAVY = ("numpy", "z3", "lark", "pymunk", "foxglove", "rich", "behaviours", "sim", "rplan.driver", "rplan.ways")
+
+
+@pytest.mark.parametrize("option", ["--help", "--nonsense"])
+def test_help_and_wrong_options_are_answered_without_the_compiler_and_the_simulator(option: str) -> None:
+    program = (
+        "import sys\nfrom rplan.apps.cli import COMMANDS, cli\n"
+        "for command in COMMANDS:\n"
+        f"    try: cli([command, {option!r}])\n    except SystemExit: pass\n"
+        f"    loaded = [name for name in {HEAVY!r} if name in sys.modules]\n"
+        "    if loaded: sys.exit(f'{command} loads {loaded}')\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr.splitlines()[-1]
+    assert (done.stdout + done.stderr).count("Usage: ") == len(cli.COMMANDS)
+
+
+def test_what_help_names_without_loading_it_is_what_there_is() -> None:
+    assert import_.FORMATS == importers.FORMATS
+    assert (*MODELS,) == import_.MODELS
+    assert map.STYLES == drawn.STYLES
+    assert (*PRESETS, "both") == reproduce.PRESETS

@@ -12,7 +12,7 @@ from click.testing import CliRunner, Result
 
 import rplan.apps.pytest_plugin.mutants
 from rplan.apps.cli import cli
-from rplan.apps.commands import mutate
+from rplan.apps.doing import mutate
 from rplan.lang.parse import parse_text
 from rplan.lang.printer import print_plan
 from rplan.lang.source import Source

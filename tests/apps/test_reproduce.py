@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from rplan.apps.cli import cli
-from rplan.apps.commands import reproduce as command
+from rplan.apps.doing import reproduce as command
 from rplan.apps.reproduce import experiment, report
 from rplan.apps.reproduce.experiment import Asked, Bench, batches
 from rplan.apps.reproduce.figures import case_of, seed_of

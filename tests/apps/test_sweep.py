@@ -19,7 +19,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from rplan.apps.cli import cli
-from rplan.apps.commands import sweep as command
+from rplan.apps.doing import sweep as command
 from rplan.apps.sweep import processes
 from rplan.apps.sweep.processes import EngineError
 from rplan.apps.sweep.rows import MEASURED

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import subprocess
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from time import process_time
@@ -298,22 +296,6 @@ def test_a_recording_that_was_cut_short_is_explained_as_far_as_it_goes(tmp_path:
     assert 1 < last < 4.9
     assert told("why", path, "--at", str(last))["tick"] == len(ticks) - 1
     assert f"lasts from 0 s to {last:g} s, where it was cut short" in wrong("why", path, "--at", "4.9")
-
-
-# --- help ---------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("command", ["why", "why-not", "inspect"])
-@pytest.mark.parametrize("option", ["--help", "--nonsense"])
-def test_help_and_wrong_options_are_answered_without_the_compiler(command: str, option: str) -> None:
-    heavy = ("numpy", "z3", "lark", "behaviours.catalogue", "rplan.driver")
-    program = (
-        f"import sys\nfrom rplan.apps.cli import cli\n"
-        f"try: cli([{command!r}, {option!r}])\nexcept SystemExit: pass\n"
-        f"print('heavy:', [name for name in {heavy!r} if name in sys.modules])"
-    )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=ROOT)
-    assert done.stdout.endswith("heavy: []\n")
 
 
 # --- a controller that runs ---------------------------------------------------------------------------

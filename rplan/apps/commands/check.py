@@ -8,7 +8,6 @@ import click
 
 from rplan.apps import talk
 from rplan.apps.files import plan_file
-from rplan.ways.coverage import review
 
 
 @click.command("check", short_help="Say what is wrong with a plan before it runs.")
@@ -24,6 +23,8 @@ def command(plan: str, strict: bool, allow_holes: bool, verbose: bool, as_json: 
     What a situation shows comes with the simplest one. PLAN is a file, a folder with one plan, or the name of a plan
     that comes with rplan. Exit code 1 if it is wrong.
     """
+    from rplan.ways.coverage import review
+
     checks = partial(review, notes=verbose or as_json)
     path = plan_file(plan)
     compiled = talk.compiled(

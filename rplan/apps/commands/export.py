@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from rplan.apps.files import InputError, unreadable
-from rplan.apps.recordings import recording_at
-from rplan.apps.table import write_csv, write_parquet
-from sim.recording import Recording, RecordingError
+
+if TYPE_CHECKING:
+    from sim.recording import Recording
 
 FILE = click.Path(dir_okay=False, path_type=Path)
 
@@ -27,6 +28,9 @@ def command(
     recording: Path, csv: Path | None, parquet: Path | None, video: Path | None, fps: int, speed: float
 ) -> None:
     """Write what RECORDING holds into files that other programs read."""
+    from rplan.apps.recordings import recording_at
+    from rplan.apps.table import write_csv, write_parquet
+
     if csv is None and parquet is None and video is None:
         raise InputError("nothing is asked for: give --csv FILE, --parquet FILE or --video FILE")
     if not (math.isfinite(speed) and 0.01 <= speed <= 1000):
@@ -41,6 +45,8 @@ def command(
 
 
 def _write(recording: Path, target: Path, write: Callable[[], str]) -> None:
+    from sim.recording import RecordingError
+
     if target.resolve() == recording.resolve():
         raise InputError(f"{target} is the recording itself: write elsewhere")
     try:

@@ -9,8 +9,6 @@ import click
 from rplan.apps import talk
 from rplan.apps.files import InputError, plan_file, unreadable
 from rplan.lang.diagnostic import InternalError, PlanError
-from rplan.lang.formatter import comments, formatted
-from rplan.lang.reader import source_from_file, words_of
 from rplan.lang.source import Source
 
 
@@ -39,6 +37,8 @@ def command(plans: tuple[str, ...], check: bool, stdout: bool, as_json: bool) ->
 
 def _changes(path: Path, *, check: bool, stdout: bool) -> bool:
     """Whether the text of the file is in another layout; then it is brought into the canonical one, unless checking."""
+    from rplan.lang.reader import source_from_file
+
     try:
         source = source_from_file(path)
         text = _laid_out(source)
@@ -55,6 +55,9 @@ def _changes(path: Path, *, check: bool, stdout: bool) -> bool:
 
 
 def _laid_out(source: Source) -> str:
+    from rplan.lang.formatter import comments, formatted
+    from rplan.lang.reader import words_of
+
     text = formatted(source)
     if words_of(text) != words_of(source.text) or comments(text) != comments(source.text):
         raise InternalError(f"the layout of {source.name} would change what it says")

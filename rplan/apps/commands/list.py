@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
-from rich.console import Console
-from rich.table import Table
-from rich.text import Text
 
-from behaviours.interface import Library
 from rplan.apps import talk
 from rplan.apps.files import InputError, packaged_plans
+
+if TYPE_CHECKING:
+    from behaviours.interface import Library
 
 
 @click.command("list", short_help="List plans, libraries and what they offer.")
@@ -66,6 +66,10 @@ def _overview() -> None:
 
 
 def _details(library: Library) -> None:
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
     console = Console(highlight=False, markup=False)
     console.print(Text.assemble((library.name, "bold"), f": {library.doc}"))
     functions = Table("function", "type", "says", title="Functions", title_justify="left", box=None)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from rplan.apps.files import InputError, unreadable
-from sim.recording import RecordingError
-from sim.repair import Saved
-from sim.repair import repair as repaired
+
+if TYPE_CHECKING:
+    from sim.repair import Saved
 
 
 @click.command("repair", short_help="Make a whole file of a recording that was cut short.")
@@ -17,6 +18,9 @@ from sim.repair import repair as repaired
 @click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path), help="Default: in its place.")
 def command(recording: Path, output: Path | None) -> None:
     """Save what RECORDING holds before it breaks off, with index and footer; a whole file is left as it is."""
+    from sim.recording import RecordingError
+    from sim.repair import repair as repaired
+
     try:
         saved = repaired(recording, output)
     except RecordingError as error:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from rplan.apps import talk
 from rplan.apps.files import InputError, unreadable
-from rplan.apps.recordings import recording_at
-from rplan.apps.viewer.page import write_page
-from sim.recording import Recording, RecordingError
+
+if TYPE_CHECKING:
+    from sim.recording import Recording
 
 
 @click.command("replay", short_help="Make a page that plays a recording.")
@@ -25,6 +26,8 @@ def command(recording: Path, output: Path | None) -> None:
     It shows the world and what is sensed in it, the plan with what is active, why each switch happened, and the circuit
     with its wires.
     """
+    from rplan.apps.recordings import recording_at
+
     target = output or recording.with_suffix(".html")
     if target.resolve() == recording.resolve():
         raise InputError(f"{target} is the recording itself: write elsewhere")
@@ -36,6 +39,9 @@ def command(recording: Path, output: Path | None) -> None:
 
 
 def _write(run: Recording, recording: Path, target: Path) -> str:
+    from rplan.apps.viewer.page import write_page
+    from sim.recording import RecordingError
+
     try:
         return write_page(run, target, libraries=talk.libraries())
     except RecordingError as error:

@@ -6,17 +6,17 @@ import asyncio
 import signal
 from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from rplan.apps import talk
 from rplan.apps.files import InputError, plan_file, scenario_file, unreadable
-from rplan.apps.simulation import World, load_world
-from rplan.apps.viewer.session import Session
-from rplan.driver import Compiled
 from rplan.lang.diagnostic import PlanError
-from sim.scenarios.importers.imported import WorldFileError
-from sim.scenarios.schema import ScenarioError
+
+if TYPE_CHECKING:
+    from rplan.apps.viewer.session import Session
+    from rplan.driver import Compiled
 
 
 @click.command("view", short_help="Watch a plan while its simulation runs.")
@@ -40,7 +40,7 @@ def command(
         raise InputError("rplan view needs websockets: pip install 'rplan[view]'")
     path = plan_file(plan)
     compiled = talk.compiled(path, allow_holes=allow_holes)
-    session = _session(compiled, path, _world(scenario_file(scenario, path)), seed)
+    session = _session(compiled, path, scenario_file(scenario, path), seed)
     session.wishes.running = not paused
     try:
         asyncio.run(_watch(session, port, record))
@@ -55,24 +55,19 @@ def command(
         raise InputError(session.unwritten)
 
 
-def _world(path: Path) -> World:
-    try:
-        return load_world(path)
-    except ScenarioError as error:
-        raise InputError("the scenario is wrong\n" + "\n".join(f"  {p}" for p in error.problems)) from None
-    except WorldFileError as error:
-        raise InputError(str(error)) from None
-    except OSError as error:
-        unreadable(path, error)
+def _session(compiled: Compiled, path: Path, scenario: Path, seed: int) -> Session:
+    from rplan.apps.simulation import world_in
+    from rplan.apps.viewer.session import Session
+    from sim.scenarios.schema import ScenarioError
 
-
-def _session(compiled: Compiled, path: Path, world: World, seed: int) -> Session:
+    world = world_in(scenario)
     try:
         return Session(compiled, world, seed, talk.libraries())
     except PlanError as error:
         talk.wrong(error, path)
     except ScenarioError as error:
-        raise InputError("\n".join(map(str, error.problems))) from None
+        told = [f"{scenario.name}, seed {seed}: {one.path}: {one.message}" for one in error.problems]
+        raise InputError("\n".join(told)) from None
 
 
 async def _watch(session: Session, port: int, record: Path | None) -> None:
