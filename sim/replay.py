@@ -286,4 +286,11 @@ def write_replay(recording: Recording, path: Path | str, verdict: str = "", tell
 
 def template() -> str:
     """The page, with `{{data}}` and `{{title}}` still to be put in."""
-    return files("sim").joinpath("replay.html").read_text(encoding="utf-8")
+    return (
+        files("sim").joinpath("replay.html").read_text(encoding="utf-8").replace("{{circuit.js}}", circuit_script(), 1)
+    )
+
+
+def circuit_script() -> str:
+    """What draws parts of a large circuit in a page."""
+    return files("sim").joinpath("circuit.js").read_text(encoding="utf-8")

@@ -66,12 +66,12 @@ def test_tooltips_name_the_places_and_any_name_is_escaped() -> None:
     span = Span("a<b>.rplan", 3, 4, 3, 9)
     cells = (Cell(Op.INPUT, (), 0), Cell(Op.REGISTER, (), 0), Cell(Op.AND, (0, 1)))
     circuit = Circuit(
-        "<&>", (Port('"<x>\n', (span,)),), (Register("r&d", False, 2),), cells, ((Port("y" * 80, (span,)), 2),)
+        "<&>", (Port('"<x>\n', (span,)),), (Register("r&d", False, 2),), cells, ((Port("y" * 180, (span,)), 2),)
     )
     drawing = drawn(circuit)
-    assert texts(drawing) == ["<&>", '"<x>?', "r&d", "y" * 59 + "…", "next r&d"]
+    assert texts(drawing) == ["<&>", '"<x>?', "r&d", "y" * 159 + "…", "next r&d"]
     titles = [title.text or "" for title in drawing.iter(f"{SVG}title")]
-    assert f"{'y' * 80} at a<b>.rplan:3:4" in titles
+    assert f"{'y' * 180} at a<b>.rplan:3:4" in titles
 
 
 def test_a_circuit_without_gates_or_outputs_is_drawn_too() -> None:

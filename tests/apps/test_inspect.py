@@ -18,6 +18,7 @@ from rplan.apps.drawing.inspect import Table, inspect
 from rplan.apps.drawing.inspect_page import page
 from rplan.apps.drawing.inspect_svg import draw
 from rplan.apps.drawing.inspect_text import WIDTH, text
+from rplan.apps.drawing.inspect_words import register_words
 from rplan.apps.wiring import compile_file
 from rplan.circuit.evaluate import evaluate
 from rplan.driver import Compiled, compile_plan
@@ -80,7 +81,10 @@ def test_in_every_situation_one_row_holds_and_sets_what_the_circuit_sets(source:
 
     plan = compile_plan(Source("small.rplan", source), signatures(), allow_holes=True)
     table, circuit = inspect(plan).table, plan.circuit
-    names = [*(port.name for port in circuit.inputs), *(f"register {one.name}" for one in circuit.registers)]
+    names = [
+        *(port.name for port in circuit.inputs),
+        *(f"register {register_words(one.name)}" for one in circuit.registers),
+    ]
     for bits in product((False, True), repeat=len(names)):
         inputs, registers = bits[: len(circuit.inputs)], bits[len(circuit.inputs) :]
         (row,) = holding(table, dict(zip(names, bits, strict=True)))
@@ -260,10 +264,14 @@ def test_what_cannot_be_written_or_drawn_is_said(tmp_path: Path) -> None:
     )
     nowhere = rplan_inspect(FIND, "--html", str(tmp_path / "no" / "a.html"))
     assert nowhere.exit_code == 2 and "No such file" in nowhere.stderr
-    large = tmp_path / "large.rplan"
-    large.write_text(many(800), encoding="utf-8")
-    drawn = rplan_inspect(str(large), "--circuit", "--svg", str(tmp_path / "a.svg"))
-    assert drawn.exit_code == 2 and "too large to be drawn" in drawn.stderr
+    drawing = str(tmp_path / "a.svg")
+    unknown = rplan_inspect(FIND, "--circuit", "--svg", drawing, "--of", "actoin")
+    assert unknown.exit_code == 2
+    assert "nothing in the circuit is called actoin" in unknown.stderr and "near it: action" in unknown.stderr
+    for more in (["--circuit"], ["--table", "--svg", drawing], ["--svg", drawing]):
+        alone = rplan_inspect(FIND, "--of", "action", *more)
+        assert (alone.exit_code, alone.stderr) == (2, "error: --of goes with --circuit --svg\n")
+    assert not Path(drawing).exists()
 
 
 # --- what is large ---------------------------------------------------------------------------------

@@ -25,6 +25,7 @@ FILE = click.Path(dir_okay=False, path_type=Path)
 @click.option("--circuit", is_flag=True, help="Gates, depth, registers, and what a tick costs.")
 @click.option("--percepts", is_flag=True, help="What each rule asks.")
 @click.option("--svg", type=FILE, help="Draw the part that is asked for; the goal tree if none is.")
+@click.option("--of", help="Draw of the circuit what makes this output, or what reads this percept, register or gate.")
 @click.option("--html", type=FILE, help="Write all parts as one page, with folds and a search.")
 @click.option("--json", "as_json", is_flag=True, help="For programs.")
 @talk.with_libraries
@@ -35,6 +36,7 @@ def command(
     circuit: bool,
     percepts: bool,
     svg: Path | None,
+    of: str | None,
     html: Path | None,
     as_json: bool,
 ) -> None:
@@ -46,10 +48,12 @@ def command(
     asked = [part for part, wanted in flags.items() if wanted]
     if svg is not None and len(asked) > 1:
         raise InputError("--svg draws one part: give one of --table, --goals, --circuit, --percepts")
+    if of is not None and (svg is None or asked != ["circuit"]):
+        raise InputError("--of goes with --circuit --svg")
     compiled = talk.compiled(plan_file(plan), allow_holes=True, as_json=as_json)
     found = inspect(compiled)
     if svg is not None:
-        _write(svg, lambda: _drawn(found, asked[0] if asked else "goals"))
+        _write(svg, lambda: _drawn(found, asked[0] if asked else "goals", of or ""))
     if html is not None:
         _write(html, lambda: _page(found))
     if as_json:
@@ -58,11 +62,11 @@ def command(
         click.echo(talk.printable(text(found, asked or list(PARTS))))
 
 
-def _drawn(found: Inspection, part: str) -> str:
+def _drawn(found: Inspection, part: str, of: str) -> str:
     from rplan.apps.drawing.inspect_svg import draw
 
     try:
-        return draw(found, part)
+        return draw(found, part, of)
     except ValueError as error:
         raise InputError(str(error)) from None
 

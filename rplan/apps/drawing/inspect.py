@@ -14,6 +14,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from rplan.apps.drawing.inspect_words import register_words
 from rplan.circuit.build import HOLE
 from rplan.circuit.cell import Op
 from rplan.circuit.circuit import Circuit
@@ -149,7 +150,9 @@ def _leaves(tree: Tree, known: dict[int, int]) -> int:
 
 def _names(circuit: Circuit) -> dict[Variable, str]:
     inputs: dict[Variable, str] = {(Op.INPUT, n): port.name for n, port in enumerate(circuit.inputs)}
-    return inputs | {(Op.REGISTER, n): f"register {one.name}" for n, one in enumerate(circuit.registers)}
+    return inputs | {
+        (Op.REGISTER, n): f"register {register_words(one.name)}" for n, one in enumerate(circuit.registers)
+    }
 
 
 def _paths(
@@ -195,7 +198,7 @@ def _row(compiled: Compiled, cube: Cube, leaf: Leaf) -> Row:
     ports = [port.name for port, _ in compiled.circuit.outputs]
     when = dict(cube)
     inputs = [when.get(port.name, False) for port in compiled.circuit.inputs]
-    registers = [when.get(f"register {one.name}", False) for one in compiled.circuit.registers]
+    registers = [when.get(f"register {register_words(one.name)}", False) for one in compiled.circuit.registers]
     way = taken_way(compiled.ways, inputs, registers)
     sets = tuple(name for name, bit in zip(ports, leaf.outputs, strict=True) if bit and name != HOLE)
     return Row(cube, sets, leaf.outputs[ports.index(HOLE)], *_by(way))

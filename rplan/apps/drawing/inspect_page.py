@@ -6,14 +6,17 @@ them. Leaves alone: runs; `rplan replay` shows those.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Sequence
 from html import escape
 from importlib.resources import files
 
 from rplan.apps.drawing.inspect import Branch, Inspection, Row
 from rplan.apps.drawing.inspect_circuit import MOST_GATES, tagged
+from rplan.apps.drawing.inspect_circuit_part import compact
 from rplan.apps.drawing.inspect_svg import words
 from rplan.apps.drawing.inspect_text import RANKED, WIDEST, where
+from sim.replay import circuit_script
 
 UNFOLDED = 80
 """A tree of no more places than these is shown whole; of a larger one the rules are folded."""
@@ -32,6 +35,7 @@ def page(inspection: Inspection) -> str:
         "circuit": _circuit(inspection),
         "percepts": "\n".join(_percepts(inspection)),
         "text": "\n".join(_text(inspection.text)),
+        "script": circuit_script() if inspection.stats.gates > MOST_GATES else "",
     }
     head, *rest = template.split("{{")
     filled = [head]
@@ -120,7 +124,8 @@ def _circuit(inspection: Inspection) -> str:
         f"there is one every {inspection.period:g} s.</p>"
     )
     if costs.gates > MOST_GATES:
-        return f'{said}<p class="dim">It is too large to be drawn.</p>'
+        values = json.dumps(compact(inspection.circuit), separators=(",", ":")).replace("<", "\\u003c")
+        return f'{said}<div id="part"></div><script type="application/json" id="made">{values}</script>'
     return f'{said}<div class="wide">{tagged(inspection.circuit)}</div>'
 
 

@@ -1,7 +1,7 @@
 """An inspection as drawings in SVG.
 
 Takes: an `Inspection` and which part. Gives: an SVG text that needs nothing else. Leaves alone: circuits, which svg.py
-draws; `ValueError` for what is too large to be read.
+draws, of a large one the part that is named; `ValueError` for what is too large to be read.
 """
 
 from __future__ import annotations
@@ -10,7 +10,10 @@ from collections.abc import Iterator, Sequence
 from html import escape
 
 from rplan.apps.drawing.inspect import Branch, Inspection
+from rplan.apps.drawing.inspect_circuit_part import choice
+from rplan.apps.drawing.inspect_circuit_part import part as circuit_part
 from rplan.apps.drawing.inspect_text import WIDEST, WIDTH, listed, percepts_text
+from rplan.apps.drawing.svg import MOST_GATES
 from rplan.apps.drawing.svg import svg as circuit_svg
 
 LINE, INDENT, LETTER, MARGIN = 18.0, 18.0, 6.7, 16.0
@@ -26,9 +29,12 @@ text { font: 11px ui-monospace, Menlo, Consolas, monospace; fill: #1c2733; } .he
 """.strip()
 
 
-def draw(inspection: Inspection, part: str) -> str:
-    """The drawing of a part: table, goals, circuit or percepts."""
+def draw(inspection: Inspection, part: str, of: str = "") -> str:
+    """The drawing of a part: table, goals, circuit or percepts; of the circuit, of what `of` names."""
     match part:
+        case "circuit" if of or inspection.stats.gates > MOST_GATES:
+            found = circuit_part(inspection.circuit, choice(inspection.circuit, of))
+            return circuit_svg(found.circuit, found.numbers)
         case "circuit":
             return circuit_svg(inspection.circuit)
         case "table" if len(inspection.table.conditions) > WIDEST:

@@ -10,6 +10,7 @@ from itertools import takewhile
 from pathlib import PurePath
 
 from rplan.apps.drawing.inspect import Branch, Inspection, Reads, Row, Table
+from rplan.apps.drawing.inspect_words import register_words
 
 WIDEST = 24
 """So many conditions have a column each; of more, each row says those that it asks."""
@@ -118,7 +119,9 @@ def circuit_text(inspection: Inspection) -> str:
         ("every tick", tick),
     ]
     lines = [f"{name:<12}{value}" for name, value in rows]
-    lines += [f"{'register' if n == 0 else '':<12}{one.name}" for n, one in enumerate(circuit.registers)]
+    lines += [
+        f"{'register' if n == 0 else '':<12}{register_words(one.name)}" for n, one in enumerate(circuit.registers)
+    ]
     return "\n".join(lines)
 
 

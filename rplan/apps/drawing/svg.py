@@ -2,7 +2,8 @@
 
 Takes: a circuit. Gives: an SVG text that needs nothing else: inputs and registers at the left, gates in columns by
 depth, outputs and what registers become at the right; places of the plan as tooltips. Leaves alone: circuits of more
-than `MOST_GATES` gates, which no one can read (`ValueError`).
+than `MOST_GATES` gates, which no one can read (`ValueError`); inspect_circuit_part.py takes a part of them, in which
+each gate and each source stands as far right as what reads it lets it.
 
 The layout is that of Sugiyama, Tagawa and Toda (1981): columns by depth, a wire that skips columns has a bend in each
 of them, and every column is sorted and spaced by the mean of its neighbours, to and fro.
@@ -14,13 +15,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from html import escape
 
+from rplan.apps.drawing.inspect_words import register_words
 from rplan.circuit.cell import Cell, Op
 from rplan.circuit.circuit import Circuit, Port
 
 MOST_GATES = 1000
 COLUMN, ROW, BEND = 62.0, 26.0, 11.0
 """Pixels from column to column, between two gates of a column, and between a wire and what is beside it."""
-MARGIN, LETTER, LONGEST_NAME = 24.0, 6.3, 60
+MARGIN, LETTER, LONGEST_NAME, LONGEST_END = 24.0, 6.3, 60, 160
+"""Letters of a name at the left and of one at the right, where nothing is beside it."""
+LONGEST_INSIDE = 32
+"""Of a name between gates."""
 SWEEPS, PULL = 24, 0.97
 
 STYLE = """
@@ -46,26 +51,30 @@ class _Node:
     after: list[_Node] = field(default_factory=list)
 
 
-def svg(circuit: Circuit) -> str:
-    """The drawing of a circuit; `ValueError` if it is too large to be read."""
+def svg(circuit: Circuit, numbers: Sequence[int] = ()) -> str:
+    """The drawing of a circuit; `ValueError` if it is too large to be read.
+
+    numbers: of a part of a circuit, the net of the whole that each of its nets is.
+    """
     gates = sum(1 for cell in circuit.cells if cell.operands)
     if gates > MOST_GATES:
         raise ValueError(f"a circuit of {gates:,} gates is too large to be drawn (at most {MOST_GATES:,})")
-    return _Drawing(circuit).text()
+    return _Drawing(circuit, numbers).text()
 
 
 class _Drawing:
-    def __init__(self, circuit: Circuit) -> None:
-        self.circuit = circuit
+    def __init__(self, circuit: Circuit, numbers: Sequence[int]) -> None:
+        self.circuit, self.numbers = circuit, numbers
         self.nodes = self._sources_and_gates()
         self.last = 1 + max((node.column for node in self.nodes), default=0)
         self.ends = [_Node(self.last, ROW) for _ in range(len(circuit.outputs) + len(circuit.registers))]
         self.drivers = [net for _, net in circuit.outputs] + [register.next for register in circuit.registers]
+        if numbers:
+            self._late()
         self.bends: list[_Node] = []
         self.chains = [self._chain(net) for net in range(len(self.nodes))]
         _arrange([*self.nodes, *self.bends, *self.ends], self.last)
-        names = [self._label(cell)[0] for cell in circuit.cells if not cell.operands]
-        self.left = MARGIN + 22 + LETTER * max((len(_short(name)) for name in names), default=0)
+        self.rooms, self.places = self._columns()
 
     def _sources_and_gates(self) -> list[_Node]:
         nodes: list[_Node] = []
@@ -73,6 +82,33 @@ class _Drawing:
             column = 1 + max((nodes[operand].column for operand in cell.operands), default=-1)
             nodes.append(_Node(column, ROW))
         return nodes
+
+    def _late(self) -> None:
+        """Move everything as far right as what reads it lets it."""
+        columns = [self.last] * len(self.nodes)
+        for net in range(len(columns) - 1, -1, -1):
+            self.nodes[net].column = columns[net] - 1
+            for operand in self.circuit.cells[net].operands:
+                columns[operand] = min(columns[operand], columns[net] - 1)
+        first = min((node.column for node in self.nodes), default=0)
+        for node in self.nodes:
+            node.column -= first
+
+    def _columns(self) -> tuple[list[float], list[float]]:
+        """(room for names, x) of each column."""
+        letters = [0] * (self.last + 1)
+        for node, cell in zip(self.nodes, self.circuit.cells, strict=True):
+            if not cell.operands:
+                name = _short(self._label(cell)[0], self._longest(node))
+                letters[node.column] = max(letters[node.column], len(name))
+        rooms = [LETTER * count for count in letters]
+        places = [MARGIN + 22 + rooms[0]]
+        for room in rooms[1:]:
+            places.append(places[-1] + COLUMN + room)
+        return rooms, places
+
+    def _longest(self, node: _Node) -> int:
+        return LONGEST_INSIDE if node.column else LONGEST_NAME
 
     def _chain(self, net: int) -> dict[int, _Node]:
         """The bends of the wire of a net, by column, up to the last column but one in which it is read."""
@@ -96,8 +132,10 @@ class _Drawing:
         top = min((node.y for node in everything), default=0.0)
         for node in everything:
             node.y += MARGIN + 40 - top
-        ends = [port.name for port, _ in self.circuit.outputs] + [f"next {r.name}" for r in self.circuit.registers]
-        right = 30 + LETTER * max((len(_short(name)) for name in ends), default=0)
+        ends = [port.name for port, _ in self.circuit.outputs] + [
+            f"next {register_words(r.name)}" for r in self.circuit.registers
+        ]
+        right = 30 + LETTER * max((len(_short(name, LONGEST_END)) for name in ends), default=0)
         width = self._x(self.last) + right + MARGIN
         height = max((node.y for node in everything), default=0.0) + ROW + MARGIN
         lines = [
@@ -113,10 +151,12 @@ class _Drawing:
         return "\n".join([*lines, "</svg>"]) + "\n"
 
     def _ports(self) -> list[Port]:
-        return [port for port, _ in self.circuit.outputs] + [Port(r.name) for r in self.circuit.registers]
+        return [port for port, _ in self.circuit.outputs] + [
+            Port(register_words(r.name)) for r in self.circuit.registers
+        ]
 
     def _x(self, column: int) -> float:
-        return self.left + COLUMN * column
+        return self.places[column]
 
     def _wires(self, net: int) -> str:
         """Everything that a net drives, as one path in one colour."""
@@ -127,8 +167,9 @@ class _Drawing:
                 slots = to.before
                 shift = 5.0 * (slots.index(bend) * 2 - 1) if len(slots) == 2 else 0.0
                 end, middle = self._x(to.column) - (11 if to in self.ends or to.room == ROW else 0), COLUMN * 0.45
-                aim = f"{end - middle:g} {to.y + shift:.1f} {end:g} {to.y + shift:.1f}"
-                parts.append(f"M{x:g} {y:.1f}C{x + middle:g} {y:.1f} {aim}")
+                room = self.rooms[to.column]
+                aim = f"{end - room - middle:g} {to.y + shift:.1f} {end - room:g} {to.y + shift:.1f}"
+                parts.append(f"M{x:g} {y:.1f}C{x + middle:g} {y:.1f} {aim}" + (f"H{end:g}" if room else ""))
         name = _escaped(self._label(self.circuit.cells[net])[0] or f"net {net}")
         colour = COLOURS[net % len(COLOURS)]
         return f'<g><title>{name}</title><path class="wire" stroke="{colour}" d="{"".join(parts)}"/></g>'
@@ -146,9 +187,11 @@ class _Drawing:
             case _:
                 kind = {Op.INPUT: "port"}.get(cell.op, cell.op.value)
                 dot = f'<circle class="gate {kind}" cx="{x + 6:g}" cy="{y:.1f}" r="5"/>'
-                label = f'<text x="{x - 6:g}" y="{y + 4:.1f}" text-anchor="end">{_escaped(_short(name))}</text>'
+                short = _escaped(_short(name, self._longest(self.nodes[net])))
+                label = f'<text x="{x - 6:g}" y="{y + 4:.1f}" text-anchor="end">{short}</text>'
                 return f"<g><title>{_escaped(said)}</title>{dot}{label}</g>"
-        return f'<g><title>{cell.op.value}, net {net}</title><path class="gate {cell.op.value}" d="{shape}"/></g>'
+        number = self.numbers[net] if self.numbers else net
+        return f'<g><title>{cell.op.value}, net {number}</title><path class="gate {cell.op.value}" d="{shape}"/></g>'
 
     def _label(self, cell: Cell) -> tuple[str, str]:
         """(name of what is no gate, its tooltip)."""
@@ -156,7 +199,7 @@ class _Drawing:
             case Op.INPUT:
                 return self.circuit.inputs[cell.index].name, _said(self.circuit.inputs[cell.index])
             case Op.REGISTER:
-                name = self.circuit.registers[cell.index].name
+                name = register_words(self.circuit.registers[cell.index].name)
                 return name, f"register {name}"
             case Op.CONSTANT:
                 return ("true" if cell.index else "false",) * 2
@@ -167,7 +210,7 @@ class _Drawing:
         x, y = self._x(node.column), node.y
         kind = "register" if name != port.name else "port"
         dot = f'<rect class="gate {kind}" x="{x - 11:g}" y="{y - 5:.1f}" width="10" height="10"/>'
-        label = f'<text x="{x + 6:g}" y="{y + 4:.1f}">{_escaped(_short(name))}</text>'
+        label = f'<text x="{x + 6:g}" y="{y + 4:.1f}">{_escaped(_short(name, LONGEST_END))}</text>'
         return f"<g><title>{_escaped(_said(port))}</title>{dot}{label}</g>"
 
 
@@ -221,8 +264,8 @@ def _said(port: Port) -> str:
     return port.name + (f" at {places}" if places else "")
 
 
-def _short(name: str) -> str:
-    return name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME - 1]}…"
+def _short(name: str, longest: int) -> str:
+    return name if len(name) <= longest else f"{name[: longest - 1]}…"
 
 
 def _escaped(text: str) -> str:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from rplan.apps.drawing.inspect_circuit import MOST_GATES, tagged
+from rplan.apps.drawing.inspect_circuit_part import compact
 from rplan.apps.libraries import Catalogue
 from rplan.apps.wiring import compile_source
 from rplan.circuit.stats import stats
@@ -130,9 +131,11 @@ def _bits(text: str) -> list[bool]:
 
 
 def circuit(compiled: Compiled) -> Json:
-    """{"stats", "outputs", "svg", "cells": [[operation, operands or index …] …]}; svg is "" where it is too large."""
+    """{"stats", "outputs", "svg", "cells": [[operation, operands or index …] …]}; where it is too large to be drawn
+    whole, svg is "" and "part" has all that the page draws parts of."""
     costs, made = stats(compiled.circuit), compiled.circuit
     cells = [[c.op.value, *(c.operands or (c.index,))] for c in made.cells]
+    large = costs.gates > MOST_GATES
     return {
         "stats": {
             "gates": costs.gates,
@@ -141,9 +144,9 @@ def circuit(compiled: Compiled) -> Json:
             "operations": costs.operations,
         },
         "outputs": [port.name for port, _ in made.outputs],
-        "svg": tagged(made) if costs.gates <= MOST_GATES else "",
-        "cells": cells if costs.gates <= MOST_GATES else [],
-    }
+        "svg": "" if large else tagged(made),
+        "cells": [] if large else cells,
+    } | ({"part": compact(made)} if large else {})
 
 
 def telling_of(compiled: Compiled) -> Telling:
