@@ -43,6 +43,9 @@ USED_WRONGLY = 2
 INTERNAL = 70
 OF_A_LIBRARY = "rplan_library_"
 """Begins the names of modules that `--library FILE` loads."""
+INSTALLED = "rplan.libraries"
+"""The entry points of libraries that are installed; libraries.py has the same, and is not loaded for a fault."""
+OWN = ("rplan", "behaviours", "sim")
 
 
 class Commands(click.Group):
@@ -101,8 +104,9 @@ def main() -> None:
 
 def _report(error: Exception) -> None:
     places = [(str(frame.f_globals.get("__name__")), frame, line) for frame, line in walk_tb(error.__traceback__)]
+    installed = _installed_packages()
     for name, frame, line in reversed(places):
-        if name.startswith(OF_A_LIBRARY):
+        if name.startswith(OF_A_LIBRARY) or name.partition(".")[0] in installed:
             place = f"{frame.f_code.co_filename}:{line}"
             click.echo(f"error: {place}: the library fails: {type(error).__name__}: {error}", err=True)
             sys.exit(USED_WRONGLY)
@@ -110,3 +114,10 @@ def _report(error: Exception) -> None:
     click.echo(f"rplan has a fault of its own: {type(error).__name__}: {error}{where}", err=True)
     click.echo("Nothing is wrong with your plan as far as is known; please report this with the plan.", err=True)
     sys.exit(INTERNAL)
+
+
+def _installed_packages() -> frozenset[str]:
+    """The packages that installed libraries are in."""
+    from importlib.metadata import entry_points
+
+    return frozenset(point.module.partition(".")[0] for point in entry_points(group=INSTALLED)).difference(OWN)

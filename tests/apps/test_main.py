@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from rplan.apps import cli
+from rplan.apps import cli, libraries
 from rplan.apps.commands import import_, map, reproduce
 from rplan.apps.drawing import map as drawn
 from rplan.apps.reproduce.row import PRESETS
@@ -105,6 +105,32 @@ def test_a_fault_of_a_library_of_the_users_is_told_apart(
         cli.main()
     assert caught.value.code == 2
     assert capsys.readouterr().err == f"error: {tmp_path}/arm.py:3: the library fails: KeyError: 1\n"
+
+
+def test_so_is_a_fault_of_a_library_that_is_installed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    package = tmp_path / "their_arm"
+    package.mkdir()
+    (package / "__init__.py").write_text("", encoding="utf-8")
+    (package / "inside.py").write_text("def deep():\n    return __import__('fractions').Fraction(1, 0)\n", encoding="utf-8")
+    library = "from behaviours.interface import Library\nfrom their_arm.inside import deep\n"
+    library += "def build(values, workshop):\n    return deep()\nARM = Library('arm', '', (), (), build)\n"
+    (package / "offers.py").write_text(library, encoding="utf-8")
+    information = tmp_path / "their_arm-1.0.dist-info"
+    information.mkdir()
+    (information / "METADATA").write_text("Metadata-Version: 2.1\nName: their-arm\nVersion: 1.0\n", encoding="utf-8")
+    (information / "entry_points.txt").write_text("[rplan.libraries]\narm = their_arm.offers:ARM\n", encoding="utf-8")
+    (tmp_path / "plan.rplan").write_text("(use arm)(goalem (when (lost) (do lamp on)))", encoding="utf-8")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.setattr(sys, "argv", ["rplan", "check", str(tmp_path / "plan.rplan")])
+    with pytest.raises(SystemExit) as caught:
+        cli.main()
+    assert caught.value.code == 2
+    said = capsys.readouterr().err
+    assert said.startswith(f"error: {package}/inside.py:2: the library fails: ZeroDivisionError: ")
+    assert "report" not in said
+    assert cli.INSTALLED == libraries.GROUP
 
 
 def apart(*arguments: str, stdout: int = subprocess.PIPE) -> subprocess.Popen[bytes]:
