@@ -19,14 +19,15 @@ from rplan.ways.layout import Node
 from rplan.ways.reduce import Ways
 from rplan.ways.way import TakenWay, label, wants
 
-Reason = Word["satisfied", "condition", "conflict", "alternative", "hole"]
+Reason = Word["satisfied", "nothing", "condition", "conflict", "alternative", "hole"]
 
 
 @dataclass(frozen=True, slots=True)
 class Lost:
     """A goal that set nothing. because: in words; condition: of the `if` that decided, "" where none did.
 
-    reason: `satisfied`, it asks for nothing in this situation; `condition`, another branch is taken; `conflict`, a
+    reason: `satisfied`, the fact that operators are to bring about holds; `nothing`, its rule asks for nothing in this
+    situation, be it that all is well or that it stepped aside; `condition`, another branch is taken; `conflict`, a
     member of a `prio-and` is given up; `alternative`, another way of an `or` is taken; `hole`, no way is open.
     literals: what makes the condition as it is. part_of: the goal that lost as a whole, where this is a part of it.
     span: of the goal; by: of what stood against it.
@@ -52,6 +53,7 @@ class _Looking:
         self.ways, self.way = ways, way
         self.nodes = ways.layout.nodes
         self.now = Now(ways, atoms, registers)
+        self.rules = {rule.span for rule in ways.goals.rules}
         every = (*atoms, *(False for _ in ways.atoms[len(atoms) :]))
         values = ways.guards.evaluate(every, (*registers, *(False for _ in ways.registers[len(registers) :])))
         self.values = values
@@ -69,7 +71,7 @@ class _Looking:
             if not self.served[node.number]:
                 found.append(self._unserved(node))
             elif isinstance(node.goal, Reduced) and not self._does_something(node.number):
-                found.append(self._satisfied(node))
+                found.append(self._asks_for_nothing(node))
         return tuple(found)
 
     def _unserved(self, node: Node) -> Lost:
@@ -151,16 +153,19 @@ class _Looking:
             return self.served[number]
         return any(map(self._does_something, self.ways.layout.inside[number]))
 
-    def _satisfied(self, node: Node) -> Lost:
-        """It does nothing since its last conditions say that there is nothing to do."""
+    def _asks_for_nothing(self, node: Node) -> Lost:
+        """Its last conditions lead to nothing. Only of operators is it known that the goal then holds (L20)."""
         asked = [self.nodes[number].goal for number in self._last_ifs(node.number, None)]
         conditions = [goal for goal in asked if isinstance(goal, If)]
         literals = tuple(dict.fromkeys(one for goal in conditions for one in self.now.deciding(goal.condition)))
-        words = f"already satisfied: {said(literals)}" if literals else "already satisfied: it asks for nothing"
+        by_operators = isinstance(node.goal, Reduced) and node.goal.rule_span not in self.rules
+        reason: Reason = "satisfied" if by_operators else "nothing"
+        words = "already satisfied" if by_operators else "asks for nothing"
+        words = f"{words}: {said(literals)}" if literals else words
         condition = print_condition(conditions[0].condition) if len(conditions) == 1 else ""
         by = conditions[0].span if conditions else node.goal.span
         part_of = self._part_of(node)
-        return Lost(label(node.goal), "satisfied", words, condition, literals, part_of, node.goal.span, by)
+        return Lost(label(node.goal), reason, words, condition, literals, part_of, node.goal.span, by)
 
     def _last_ifs(self, number: int, asked: int | None) -> list[int]:
         """The innermost `if`s above the places that are served by nothing."""
