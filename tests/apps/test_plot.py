@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import builtins
 import math
+import re
 import sys
 from collections.abc import Callable
 from copy import deepcopy
@@ -136,7 +137,7 @@ def test_without_matplotlib_it_says_how_to_get_it(
     for name in [name for name in sys.modules if name.startswith("matplotlib")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setattr(builtins, "__import__", without)
-    with pytest.raises(ImportError, match=r"pip install matplotlib"):
+    with pytest.raises(ImportError, match=re.escape("pip install 'rplan[plot]'")):
         plot.draw(run, tmp_path / "run.png")
     assert not (tmp_path / "run.png").exists()
 

@@ -284,6 +284,17 @@ def test_two_pages_see_the_same_and_one_that_comes_later_sees_all() -> None:
     served(act)
 
 
+def test_a_scenario_that_this_seed_makes_unsound_is_named(tmp_path: Path) -> None:
+    full = tmp_path / "full.yaml"
+    full.write_text(
+        "name: full\nbounds: [-2, -2, 2, 2]\nrobot: {start: [0, 0]}\n"
+        "scatter: [{kinds: [person], count: [50, 50], region: [-1, -1, 1, 1], min_gap: 1}]\n",
+        encoding="utf-8",
+    )
+    result = CliRunner().invoke(cli, ["view", str(FIND), "--scenario", str(full), "--seed", "7"])
+    assert (result.exit_code, result.stderr[:43]) == (2, "error: full.yaml, seed 7: scatter: no room ")
+
+
 def test_what_is_refused_is_said_and_changes_nothing() -> None:
     async def act(viewer: Viewer) -> None:
         async with page(viewer) as connection:
@@ -295,19 +306,26 @@ def test_what_is_refused_is_said_and_changes_nothing() -> None:
     assert served(act).ticks == 1
 
 
-def test_nothing_ticks_while_nobody_looks() -> None:
+def test_nothing_ticks_while_nobody_looks(monkeypatch: pytest.MonkeyPatch) -> None:
     one = session()
     one.wishes.running = True
+    paced: list[float] = []
+
+    async def sleep(seconds: float, sleep: Callable[[float], Awaitable[None]] = asyncio.sleep) -> None:
+        paced.extend([seconds] * (seconds > 0))
+        await sleep(seconds)
 
     async def act(viewer: Viewer) -> None:
-        await asyncio.sleep(0.2)
-        assert viewer.session.ticks == 1
+        for _ in range(20):
+            await asyncio.sleep(0)
+        assert (viewer.session.ticks, paced) == (1, []), "it waits for somebody who looks, and not for the next tick"
         async with page(viewer) as connection:
             await heard(connection)
             await heard(connection)
-        seen = viewer.session.ticks
-        assert seen > 1
+        assert viewer.session.ticks > 1
+        assert paced
 
+    monkeypatch.setattr(asyncio, "sleep", sleep)
     served(act, one)
 
 

@@ -21,7 +21,9 @@ from behaviours.cores.occupancy import MOST, UNKNOWN, Bytes, Region
 from behaviours.cores.patches import Patch, PatchReader
 from behaviours.interface import Pose, wrap
 from sim.maps import CellMap
-from sim.recording import Json, Recording
+from sim.plain import Json, mapping
+from sim.plain import number as as_number
+from sim.recording import Recording
 
 TRUTH, BELIEVED, ODOMETRY = "truth", "believed-pose", "odometry-pose"
 COLOURS = {TRUTH: (64, 160, 255), BELIEVED: (40, 200, 80), ODOMETRY: (255, 140, 30)}
@@ -97,7 +99,7 @@ def gather(recording: Recording, view: str | None = None, until: float = math.in
             break
         home = home or _home(recording.header, tick)
         _note_truth(found, number, tick, home)
-        for name, seen in _part(_part(tick, "plan"), "shown").items():
+        for name, seen in mapping(mapping(tick.get("plan")).get("shown")).items():
             if isinstance(seen, Mapping):
                 _note(found, number, name, seen, shown)
         found.seconds = float(t) + _period(recording.header)
@@ -136,7 +138,7 @@ def patch_of(seen: Json) -> Patch:
 
 
 def _note_truth(found: Mapped, number: int, tick: Json, home: Pose | None) -> None:
-    robot = _pose(_part(tick, "world").get("robot"))
+    robot = _pose(mapping(tick.get("world")).get("robot"))
     if robot is not None and home is not None:
         found.courses.setdefault(TRUTH, Course()).at[number] = Pose(robot.x - home.x, robot.y - home.y, robot.theta)
 
@@ -152,13 +154,12 @@ def _in_frame(found: Mapped, home: Pose) -> Mapped:
 def _home(header: Json, tick: Json) -> Pose | None:
     world = header.get("world")
     told = world.get("home") if isinstance(world, Mapping) else header.get("home")
-    return _pose(told) or _pose(_part(tick, "world").get("robot"))
+    return _pose(told) or _pose(mapping(tick.get("world")).get("robot"))
 
 
 def _period(header: Json) -> float:
     world = header.get("world")
-    told = header.get("period", world.get("period") if isinstance(world, Mapping) else None)
-    return float(told) if isinstance(told, int | float) else 0.0
+    return as_number(header.get("period", world.get("period") if isinstance(world, Mapping) else None), 0.0)
 
 
 def _pose(told: object) -> Pose | None:
@@ -169,15 +170,10 @@ def _pose(told: object) -> Pose | None:
     return Pose(*map(float, told))
 
 
-def _part(of: Json, name: str) -> Json:
-    part = of.get(name)
-    return part if isinstance(part, Mapping) else {}
-
-
 def _why_none(view: str | None, shown: Mapping[str, None], header: Json) -> str:
     if shown:
         return f"there is no map {view} in this recording; there is {', '.join(shown)}"
-    plan = _part(header, "plan").get("name") or "its brain"
+    plan = mapping(header.get("plan")).get("name") or "its brain"
     return f"there is no map in this recording: {plan} makes none; write (use mapping) into the plan and record again"
 
 

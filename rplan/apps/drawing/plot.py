@@ -19,7 +19,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from behaviours.interface import Floats, Scan
-from sim.recording import Json, Recording
+from sim.plain import Json, listed, mapping, number
+from sim.recording import Recording
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -80,25 +81,11 @@ class Band:
 # --- what the recording says ------------------------------------------------------------------------
 
 
-def mapping(value: object) -> Json:
-    """The value where it is a mapping, otherwise an empty one."""
-    return value if isinstance(value, Mapping) else {}
-
-
-def listed(value: object) -> Sequence[object]:
-    """The value where it is a list, otherwise an empty one."""
-    return value if isinstance(value, Sequence) and not isinstance(value, str) else ()
-
-
-def _number(value: object) -> float:
-    return float(value) if isinstance(value, int | float) else math.nan
-
-
 def pose_of(value: object) -> Pose | None:
     """x, y, theta, where the value is a pose."""
     match value:
         case [x, y, theta]:
-            return _number(x), _number(y), _number(theta)
+            return number(x), number(y), number(theta)
         case _:
             return None
 
@@ -112,7 +99,7 @@ def _add(track: Track, tick: Json, output: str) -> None:
     world, plan = mapping(tick.get("world")), mapping(tick.get("plan"))
     pose = pose_of(world.get("robot")) or (track.pose[-1] if track.pose else (math.nan, math.nan, 0.0))
     act = mapping(plan.get("outputs")).get(output) if plan else (track.act[-1] if track.act else None)
-    track.t.append(_number(tick.get("t")))
+    track.t.append(number(tick.get("t")))
     track.pose.append(pose)
     track.odometry.append(pose_of(world.get("odometry")) or (math.nan, math.nan, 0.0))
     track.act.append(None if act is None else str(act))
@@ -200,7 +187,7 @@ def clock(seconds: float) -> str:
 def _placed(points: Sequence[object], pose: Pose) -> list[Point]:
     cos, sin, placed = math.cos(pose[2]), math.sin(pose[2]), list[Point]()
     for point in points:
-        x, y = map(_number, listed(point)[:2])
+        x, y = map(number, listed(point)[:2])
         placed.append((pose[0] + cos * x - sin * y, pose[1] + sin * x + cos * y))
     return placed
 
@@ -214,7 +201,7 @@ def outline(shape: Json, pose: Pose, face: str, edge: str, alpha: float = 1.0) -
         return PathPatch(_rings([_placed(listed(ring), pose) for ring in listed(shape["rings"])]), **style)
     if "polygon" in shape:
         return Polygon(_placed(listed(shape["polygon"]), pose), closed=True, **style)
-    return Circle(pose[:2], _number(shape.get("circle", 0.2)), **style)
+    return Circle(pose[:2], number(shape.get("circle", 0.2)), **style)
 
 
 def _rings(rings: Sequence[Sequence[Point]]) -> Path_:
@@ -232,7 +219,7 @@ def _rings(rings: Sequence[Sequence[Point]]) -> Path_:
 def hull(world: Json) -> Json:
     """The shape of the robot."""
     robot = mapping(world.get("robot"))
-    return mapping(robot.get("shape")) or {"circle": _number(robot.get("radius", 0.3))}
+    return mapping(robot.get("shape")) or {"circle": number(robot.get("radius", 0.3))}
 
 
 def _draw_ground(axes: Axes, world: Json) -> None:
@@ -240,15 +227,15 @@ def _draw_ground(axes: Axes, world: Json) -> None:
     from matplotlib.patches import Circle, Rectangle
 
     for slope in map(mapping, listed(world.get("slopes"))):
-        xmin, ymin, xmax, ymax = (_number(value) for value in listed(slope.get("region")))
+        xmin, ymin, xmax, ymax = (number(value) for value in listed(slope.get("region")))
         axes.add_patch(Rectangle((xmin, ymin), xmax - xmin, ymax - ymin, color=SLOPE, zorder=0.5, lw=0))
-        rise, uphill = math.degrees(_number(slope.get("rise"))), _number(slope.get("uphill"))
+        rise, uphill = math.degrees(number(slope.get("rise"))), number(slope.get("uphill"))
         middle = (xmin + xmax) / 2, (ymin + ymax) / 2
         words = axes.annotate(f"{rise:.0f}° up →", middle, ha="center", va="center", rotation=math.degrees(uphill))
         words.set(color=DIM, fontsize=7.5, zorder=1)
     goal = mapping(world.get("goal"))
-    if at := [_number(value) for value in listed(goal.get("at"))]:
-        axes.add_patch(Circle((at[0], at[1]), _number(goal.get("within", 1.0)), fc=GOAL, ec=DRIVEN, alpha=0.35, lw=1.2))
+    if at := [number(value) for value in listed(goal.get("at"))]:
+        axes.add_patch(Circle((at[0], at[1]), number(goal.get("within", 1.0)), fc=GOAL, ec=DRIVEN, alpha=0.35, lw=1.2))
         _label(axes, "goal", at, DRIVEN, (0, 0))
 
 
@@ -360,13 +347,13 @@ def _mark(axes: Axes, track: Track, at: list[int], word: str, marker: str, colou
 
 def bounds_of(world: Json, track: Track) -> tuple[float, float, float, float]:
     """xmin, ymin, xmax, ymax [m] of the picture."""
-    match [_number(value) for value in listed(world.get("bounds"))]:
+    match [number(value) for value in listed(world.get("bounds"))]:
         case [xmin, ymin, xmax, ymax]:
             lot = xmin - 0.3, ymin - 0.3, xmax + 0.3, ymax + 0.3
         case _:
             lot = -math.inf, -math.inf, math.inf, math.inf
     places = [pose[:2] for pose in (*track.pose, *track.movers.get(donor_id_of(world), []))]
-    if goal := [_number(value) for value in listed(mapping(world.get("goal")).get("at"))]:
+    if goal := [number(value) for value in listed(mapping(world.get("goal")).get("at"))]:
         places.append((goal[0], goal[1]))
     xs, ys = [place[0] for place in places], [place[1] for place in places]
     left, right = max(lot[0], min(xs) - MARGIN), min(lot[2], max(xs) + MARGIN)
@@ -483,7 +470,7 @@ def draw(recording: Recording, path_png: Path | str, verdict: str = "") -> None:
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
     except ImportError as fault:
-        raise ImportError("drawing needs matplotlib: pip install matplotlib", name="matplotlib") from fault
+        raise ImportError("drawing needs matplotlib: pip install 'rplan[plot]'", name="matplotlib") from fault
     track = track_of(recording)
     if not track.t:
         raise ValueError("the recording has no ticks: there is nothing to draw")

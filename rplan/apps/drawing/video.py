@@ -22,6 +22,7 @@ from typing import IO, TYPE_CHECKING, Any
 from behaviours.interface import Scan
 from rplan.apps.drawing import plot
 from rplan.apps.drawing.plot import Pose, Track
+from sim.plain import listed, mapping
 from sim.recording import Json, Recording
 
 if TYPE_CHECKING:
@@ -101,7 +102,7 @@ class _Stage:
     def __init__(self, recording: Recording, track: Track) -> None:
         world = plot.world_of(recording.header)
         self._track, self._hull, self._donor = track, plot.hull(world), plot.donor_id_of(world)
-        self._movers = {str(m.get("id")): m for m in map(plot.mapping, plot.listed(world.get("movers")))}
+        self._movers = {str(m.get("id")): m for m in map(mapping, listed(world.get("movers")))}
         self._poses, self._scans = _movers(recording), _scans(recording)
         self._colours = plot.colours_of(recording.header, plot.bands_of(track.act))
         self._figure, self._axes = _figure(plot.bounds_of(world, track))
@@ -133,7 +134,7 @@ class _Stage:
         return bytes(self._canvas.buffer_rgba())
 
     def _draw(self, thing: Json, at: Pose, face: str, edge: str) -> None:
-        patch = plot.outline(plot.mapping(thing.get("shape")), at, face, edge)
+        patch = plot.outline(mapping(thing.get("shape")), at, face, edge)
         self._axes.add_patch(patch)
         self._axes.draw_artist(patch)
         patch.remove()
@@ -167,7 +168,7 @@ def _movers(recording: Recording) -> list[dict[str, Pose]]:
     """For each tick where the things are that move."""
     every = []
     for tick in recording.ticks:
-        movers = plot.mapping(plot.mapping(tick.get("world")).get("movers"))
+        movers = mapping(mapping(tick.get("world")).get("movers"))
         every.append({str(name): pose for name, value in movers.items() if (pose := plot.pose_of(value))})
     return every
 
