@@ -29,7 +29,7 @@ ROUNDING = 1e-9  # [rad] that a whole turn may lack
 ONE_CONTACT = 1.0  # [s] within which touches of one thing are one contact
 
 PHRASES: dict[Stage, str] = {
-    "to the donor": "on the way to the donor",
+    "to the donor": "before it came to the donor",
     "hand-over": "during the hand-over",
     "return": "on the way back",
     "to the goal": "on the way to the goal",

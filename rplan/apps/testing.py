@@ -300,7 +300,7 @@ class EpisodeRun:
     faults: tuple[tuple[float, str, str], ...]
 
     def expect(self, *, done: bool = True) -> Self:
-        """The task is done, or not."""
+        """The task that the scenario sets is done, or not: where there is a donor, its object is fetched."""
         if self.verdict.done != done:
             raise AssertionError(self._said(done))
         return self

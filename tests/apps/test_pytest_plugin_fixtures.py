@@ -203,6 +203,16 @@ def test_an_episode_gives_verdict_and_trace(room: PlanUnderTest) -> None:
         run.expect()
 
 
+def test_an_episode_of_a_plan_that_does_not_fetch_is_not_said_to_be_on_its_way_to_a_donor() -> None:
+    run = (
+        PlanUnderTest.of(Path(__file__).parents[2] / "plans" / "make_room" / "make_room.rplan")
+        .episode("visit.yaml")
+        .run(until=1)
+    )
+    with pytest.raises(AssertionError, match="not done after 1 s: out of time at 1 s before it came to the donor"):
+        run.expect(done=True)
+
+
 def test_a_recorded_run_shows_where_an_edited_plan_decides_otherwise(room: PlanUnderTest, tmp_path: Path) -> None:
     recording = tmp_path / "run.mcap"
     plan = tmp_path / "room.rplan"

@@ -78,7 +78,7 @@ def test_a_straight_driver_fetches_the_object_in_an_empty_world(small, go_and_re
 @pytest.mark.parametrize(
     ("until", "stage", "reason"),
     [
-        (5, "to the donor", "out of time at 5 s on the way to the donor"),
+        (5, "to the donor", "out of time at 5 s before it came to the donor"),
         (22, "hand-over", "out of time at 22 s during the hand-over"),
         (38, "return", "out of time at 38 s on the way back"),
     ],
