@@ -13,10 +13,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from rplan.ways.exhaust import classes, evaluate_many
-from rplan.ways.forks import Arm, Fork
+from rplan.ways.forks import Arm, Fork, witness
 from rplan.ways.parts import Asked, Part
 from rplan.ways.reach import Reach
 from rplan.ways.reduce import Ways
+from rplan.ways.situations import Trace, Undecided
 
 Bits = tuple[bool, ...]
 Ticks = dict[tuple[Bits, Bits], int]
@@ -95,31 +96,51 @@ class Reached:
         return sum(one.seen for one in every), len(every)
 
 
-def reached(asked: Asked, ticks: Ticks, reach: Reach | None = None) -> Reached:
-    """What these ticks reached. reach: of the same ways, to prove what can never be; without it nothing is said so."""
+PATIENCE = 1
+"""So many questions of a plan may spend the solver's budget; after that none is asked any more."""
+
+
+class Prover:
+    """Says of guards whether any of them can hold, and by what trace, as long as answers are to be had."""
+
+    def __init__(self, ways: Ways) -> None:
+        self.reach = Reach(ways)
+        self._undecided = 0
+
+    def never(self, guards: Iterable[int]) -> bool:
+        """Proven that none of the guards can hold; what is not decided may be."""
+        if self._undecided >= PATIENCE:
+            return False
+        answers = [self.reach.possible((guard, True)) for guard in guards]
+        self._undecided += any(isinstance(one, Undecided) for one in answers)
+        return all(one is False for one in answers)
+
+    def trace(self, guards: Iterable[int]) -> Trace | None:
+        """The simplest trace to one of the guards, where it is at hand."""
+        return None if self._undecided >= PATIENCE else witness(self.reach, guards)
+
+
+def reached(asked: Asked, ticks: Ticks, prover: Prover | None = None) -> Reached:
+    """What these ticks reached. prover: of the same ways; without it nothing is said to be never."""
     table = _Table(asked.ways, ticks)
     found = tuple(
-        ForkReached(fork, tuple(_arm(arm, table.times(arm.guards), reach) for arm in fork.arms)) for fork in asked.forks
+        ForkReached(fork, tuple(_arm(arm, table.times(arm.guards), prover) for arm in fork.arms))
+        for fork in asked.forks
     )
     parts = tuple(
-        PartReached(part, (_value(table, reach, True, part.as_true), _value(table, reach, False, part.as_false)))
+        PartReached(part, (_value(table, prover, True, part.as_true), _value(table, prover, False, part.as_false)))
         for part in asked.parts
     )
     return Reached(tuple(table.signatures()), sum(ticks.values()), found, parts)
 
 
-def _arm(arm: Arm, times: int, reach: Reach | None) -> ArmReached:
-    return ArmReached(arm, times, not times and _never(arm.guards, reach))
+def _arm(arm: Arm, times: int, prover: Prover | None) -> ArmReached:
+    return ArmReached(arm, times, not times and prover is not None and prover.never(arm.guards))
 
 
-def _value(table: _Table, reach: Reach | None, value: bool, guards: tuple[int, ...]) -> ValueReached:
+def _value(table: _Table, prover: Prover | None, value: bool, guards: tuple[int, ...]) -> ValueReached:
     seen = bool(table.where(guards))
-    return ValueReached(value, guards, seen, not seen and _never(guards, reach))
-
-
-def _never(guards: Iterable[int], reach: Reach | None) -> bool:
-    """Proven that none of the guards can hold; what is not decided may be."""
-    return reach is not None and all(reach.possible((guard, True)) is False for guard in guards)
+    return ValueReached(value, guards, seen, not seen and prover is not None and prover.never(guards))
 
 
 class _Table:

@@ -13,6 +13,7 @@ from rplan.apps.pytest_plugin.coverage import MOST_ON_PAGE, Found, sections
 from rplan.apps.pytest_plugin.shelf import Plan, Shelf
 from rplan.apps.testing import PlanUnderTest
 from rplan.apps.wiring import decider
+from rplan.ways.situations import Undecided
 from rplan.ways.tally import PartReached, Reached
 
 pytest_plugins = ["pytester"]
@@ -182,6 +183,28 @@ def test_what_is_missing_of_a_plan_that_comes_with_rplan_is_reached_by_what_is_s
         for witness in one.trace:
             plan.watch(fresh.tick(witness))
     assert list(sections(Found(plan, seen(plan), MOST_ON_PAGE))) == []
+
+
+def test_a_plan_that_the_solver_does_not_get_through_is_asked_once(plan: Plan, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+
+    def possible(*question: tuple[int, bool]) -> Undecided:
+        asked.append(question)
+        return Undecided()
+
+    monkeypatch.setattr(plan.prover.reach, "possible", possible)
+    under_test(plan).given("near")
+    found = Found(plan, seen(plan), MOST_ON_PAGE)
+    assert (len(asked), found.seen.arms, found.seen.conditions) == (1, (1, 4), (2, 8))
+    assert {one.trace for one in (*found.branches, *found.conditions)} == {None}
+
+
+def test_what_stands_in_an_included_file_is_said_with_its_name(tmp_path: Path) -> None:
+    (tmp_path / "part.rplan").write_text("(defgoalr (maint b) (when (near) (do x on)))", encoding="utf-8")
+    plan = opened(tmp_path, '(plan guard "" :period 0.1s)\n(include "part.rplan")\n(goalem (maint b))')
+    under_test(plan).given()
+    lines = [line for one in sections(Found(plan, seen(plan), MOST_ON_PAGE)) for line in one.lines]
+    assert ("part.rplan:1: (maint b): (near) → (do x (on))", "near") in lines
 
 
 def test_a_large_plan_is_told_its_branches_without_situations(plan: Plan, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from itertools import product
 
 import pytest
+import z3
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from properties.strategies import ATOMS, do, remembering, whole
@@ -188,3 +189,16 @@ def test_nothing_is_possible_that_is_false() -> None:
 def test_counting_takes_as_long_as_it_counts(count: int) -> None:
     ways = compiled(f"(goalem (and (do x a) (when (at-least {count} (p)) (do x b))))", allow_holes=True).ways
     assert Reach(ways).first_tick((ways.hole, True)) == count - 1
+
+
+def test_where_spacer_stops_by_an_exception_nothing_is_decided(monkeypatch: pytest.MonkeyPatch) -> None:
+    def spent(*_: object) -> None:
+        raise z3.Z3Exception(b"max. resource limit exceeded")
+
+    ways = compiled("(goalem (when (held-for 1s (p)) (do x a)))").ways
+    question = ((ways.sets["x"]["(a)"], True),)
+    monkeypatch.setattr(z3.Fixedpoint, "query", spent)
+    monkeypatch.setattr(reach_module, "automaton", lambda *_: None)
+    monkeypatch.setattr(reach_module, "MOST_TICKS", 5)
+    monkeypatch.setattr(Samples, "show", lambda *_: False)
+    assert Reach(ways).possible(*question) == Undecided()

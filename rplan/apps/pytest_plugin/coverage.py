@@ -14,6 +14,7 @@ from typing import Any
 
 from rplan.apps.pytest_plugin.page import Section, page
 from rplan.apps.pytest_plugin.shelf import Plan, Shelf
+from rplan.lang.source import Span
 from rplan.ways.exhaust import count_ways, exhaustible
 from rplan.ways.missing import Missing, MissingWay, missing_branches, missing_conditions, missing_ways
 from rplan.ways.sample import Samples
@@ -35,17 +36,17 @@ class Found:
 
     @cached_property
     def branches(self) -> tuple[Missing, ...]:
-        return missing_branches(self.seen, self.plan.part_reach, self.most)
+        return missing_branches(self.seen, self.plan.prover, self.most)
 
     @cached_property
     def conditions(self) -> tuple[Missing, ...]:
-        return missing_conditions(self.seen, self.plan.part_reach, self.most)
+        return missing_conditions(self.seen, self.plan.prover, self.most)
 
     @cached_property
     def ways(self) -> tuple[MissingWay, ...]:
         if self._exactly == len(self.seen.ways):
             return ()
-        return missing_ways(self.seen, self.plan.asked.ways, self.plan.part_reach, self.most)
+        return missing_ways(self.seen, self.plan.asked.ways, self.plan.prover, self.most)
 
     @cached_property
     def _exactly(self) -> int | None:
@@ -123,13 +124,18 @@ def sections(one: Found) -> Iterator[Section]:
         Section("branches not taken", [_missing(one, m) for m in one.branches], arms[1] - arms[0]),
         Section("never decided so", [_missing(one, m) for m in one.conditions], conditions[1] - conditions[0]),
     ]
-    never = [(text, "") for text in _never(one.seen)]
+    never = [(text, "") for text in _never(one)]
     listed.append(Section("cannot be reached, and does not count", never[: one.most], len(never)))
     yield from (section for section in listed if section.lines)
 
 
 def _missing(one: Found, missing: Missing) -> tuple[str, str]:
-    return f"{missing.span.line}: {missing.rule}: {missing.text}", _given(one, missing.trace)
+    return f"{_place(one, missing.span)}: {missing.rule}: {missing.text}", _given(one, missing.trace)
+
+
+def _place(one: Found, span: Span) -> str:
+    """The line; of an included file with its name."""
+    return str(span.line) if span.file == one.plan.compiled.source.name else f"{Path(span.file).name}:{span.line}"
 
 
 def _way(one: Found, missing: MissingWay) -> tuple[str, str]:
@@ -143,14 +149,14 @@ def _given(one: Found, trace: Trace | None) -> str:
     return "" if trace is None else brief(trace, one.plan.asked.ways)
 
 
-def _never(seen: Reached) -> Iterator[str]:
-    for fork in seen.forks:
+def _never(one: Found) -> Iterator[str]:
+    for fork in one.seen.forks:
         for arm in fork.arms:
             if arm.never and fork.fork.kind != "rule":
-                yield f"{arm.arm.span.line}: {fork.fork.rule}: {arm.arm.text}"
-    for part in seen.parts:
+                yield f"{_place(one, arm.arm.span)}: {fork.fork.rule}: {arm.arm.text}"
+    for part in one.seen.parts:
         if part.never:
-            yield f"{part.part.span.line}: {part.part.rule}: {part.part.text} as {part.never}"
+            yield f"{_place(one, part.part.span)}: {part.part.rule}: {part.part.text} as {part.never}"
 
 
 def pages(folder: Path, found: list[Found]) -> Iterator[Path]:

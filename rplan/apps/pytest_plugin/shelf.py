@@ -22,7 +22,7 @@ from rplan.ways.checks.branches import check_branches
 from rplan.ways.forks import Fork, forks
 from rplan.ways.parts import Asked, asked
 from rplan.ways.reach import Reach
-from rplan.ways.tally import Bits, Reached, Ticks, reached
+from rplan.ways.tally import Bits, Prover, Reached, Ticks, reached
 
 
 @dataclass
@@ -51,13 +51,13 @@ class Plan:
         return asked(self.compiled.ways)
 
     @cached_property
-    def part_reach(self) -> Reach:
-        """As `reach`, also of the parts of its conditions."""
-        return Reach(self.asked.ways)
+    def prover(self) -> Prover:
+        """What can be reached of it, the parts of its conditions too."""
+        return Prover(self.asked.ways)
 
     def reached(self) -> Reached:
         """What the ticks that were seen reached of it."""
-        return reached(self.asked, self.ticks, self.part_reach)
+        return reached(self.asked, self.ticks, self.prover)
 
     @cached_property
     def forks(self) -> tuple[Fork, ...]:
