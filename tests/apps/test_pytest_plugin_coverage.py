@@ -302,11 +302,12 @@ def test_pages_are_written_with_what_was_not_taken(pytester: pytest.Pytester, ru
 
 
 def test_what_is_never_is_painted_so(pytester: pytest.Pytester, run) -> None:
-    text = PLAN.replace("(if (slow)", "(if (and (slow) (not (slow)))")
+    text = PLAN.replace("(if (slow)", "(if (and (slow) (not (slow)))").replace("Keeps its <distance>.", "")
     (pytester.path / "guard.rplan").write_text(text, encoding="utf-8")
     result = run("--rplan-coverage=html:pages")
     page = (pytester.path / "pages" / "guard.html").read_text(encoding="utf-8")
     assert '<span class="never">(do action (rest))</span>' in page
+    assert "<p>guard.rplan</p>" in page
     assert '<span class="chip never">(slow) cannot decide as true or false</span>' in page
     cannot = "cannot be reached, and does not count"
     assert cannot in page

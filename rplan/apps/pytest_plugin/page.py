@@ -75,7 +75,7 @@ class Section:
 
 def page(compiled: Compiled, seen: Reached, ways: str, missing: Sequence[Section]) -> str:
     """The page of a plan; ways: how many were taken, of how many."""
-    name = escape(compiled.goals.name)
+    name, said = escape(compiled.goals.name), (Path(compiled.source.name).name, compiled.goals.doc)
     figures = "".join(_figures(seen, ways))
     key = "".join(f'<span><span class="swatch {kind}"></span> {says}</span>' for kind, says in KEY)
     rows = "".join(_rows(compiled, seen))
@@ -83,7 +83,7 @@ def page(compiled: Compiled, seen: Reached, ways: str, missing: Sequence[Section
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
         f"<title>{name}: coverage</title><style>{STYLE}</style></head><body><main>"
-        f"<h1>{name}</h1><p>{escape(Path(compiled.source.name).name)}: {escape(compiled.goals.doc)}</p>"
+        f"<h1>{name}</h1><p>{escape(': '.join(filter(None, said)))}</p>"
         f'<div class="figures">{figures}</div><div class="key">{key}</div>'
         f'<div class="text"><table>{rows}</table></div>{"".join(map(_section, missing))}</main></body></html>\n'
     )
