@@ -27,7 +27,7 @@ window.circuitPart = (host, made, first = () => "") => {
 
   // --- where they stand: columns by depth, sorted and spaced by the mean of their neighbours, as svg.py does ---------
   const COLUMN = 58, ROW = 26, BEND = 11, LETTER = 6.65, MARGIN = 16, SWEEPS = 24, PULL = .97;
-  const short = (text, most) => text.length <= most ? text : `${text.slice(0, most - 1)}…`;
+  const short = (text, most, tail = 0) => text.length <= most ? text : `${text.slice(0, most - 1 - tail)}…${text.slice(text.length - tail)}`;
   const mean = (nodes, other) => nodes.length ? PULL * nodes.reduce((s, n) => s + n.y, 0) / nodes.length : PULL * other;
   function space(column, wished) {
     const offsets = [], blocks = [];
@@ -64,7 +64,7 @@ window.circuitPart = (host, made, first = () => "") => {
       chains.set(k, chain);
     }
     const columns = Array.from({length: last + 1}, () => []), rooms = new Array(last + 1).fill(0), places = []; for (const n of [...at.values(), ...bends, ...outs]) columns[n.column].push(n);
-    for (const n of at.values()) if (!part.shown.has(n.net)) { n.label = isGate(n.net) ? `◂ ${behind(n.net).toLocaleString("en")} more` : short(name(n.net), n.column ? 40 : 60); rooms[n.column] = Math.max(rooms[n.column], n.label.length * LETTER); }
+    for (const n of at.values()) if (!part.shown.has(n.net)) { n.label = isGate(n.net) ? `◂ ${behind(n.net).toLocaleString("en")} more` : short(ops[n.net] === "r" ? made.registers[a[n.net]][0] : name(n.net), 36, 12); rooms[n.column] = Math.max(rooms[n.column], n.label.length * LETTER); }
     arrange(columns);
     columns.forEach((column, c) => { places.push(c ? places[c - 1] + COLUMN + rooms[c] : MARGIN + 14 + rooms[0]); for (const n of column) n.x = places[c]; });
     const every = columns.flat(), top = Math.min(...every.map(n => n.y)); for (const n of every) n.y += ROW - top;
@@ -156,7 +156,9 @@ window.circuitPart = (host, made, first = () => "") => {
     said.replaceChildren(el("b", {}, all), `: ${here.forwards ? "what reads" : "what makes"} ${here.says}${whole ? ", all of it" : ", nearest first; ◂ ▸ go on"}`); said.title = said.textContent;
     back.disabled = !before.length; fewer.disabled = most <= LEAST; more.disabled = whole || most >= MOST; makes.setAttribute("aria-pressed", String(!here.forwards)); has.setAttribute("aria-pressed", String(here.forwards));
     if (known) paint();
-    const roots = here.nets.map(k => made.at.get(k)), y = roots.reduce((s, n) => s + n.y, 0) / roots.length; paper.scrollTo(here.forwards ? 0 : made.width, y - paper.clientHeight / 2);
+    const by = Math.max(.8, Math.min(1.2, (paper.clientWidth - 4) / made.width)), roots = here.nets.map(k => made.at.get(k)), middle = key => by * roots.reduce((sum, n) => sum + n[key], 0) / roots.length;
+    sheet.setAttribute("width", made.width * by); sheet.setAttribute("height", made.height * by);
+    paper.scrollTo(middle("x") - paper.clientWidth * (here.forwards ? .3 : .55), middle("y") - paper.clientHeight / 2);
     host.dataset.shown = here.says;
   }
   function reach({nets, forwards}) { const seen = new Set(nets), left = [...nets]; while (left.length) { const k = left.pop(); for (const one of forwards ? readers[k] : reads(k)) if (isGate(one) && !seen.has(one)) { seen.add(one); left.push(one); } } return [...seen].filter(isGate).length; }

@@ -97,7 +97,7 @@ def test_a_part_that_has_all_of_an_output_computes_it() -> None:
     ((port, _),) = found.circuit.outputs
     assert port.name == "horn=true"
     names = [one.name for one in found.circuit.inputs]
-    assert sorted(names) == ["(far)", "(near)", "register (held-for 0.2s (far)), bit 0"]
+    assert sorted(names) == ["(far)", "(held-for 0.2s (far)), bit 0", "(near)"]
     for near in (False, True):
         for far in (False, True):
             given = {"(near)": near, "(far)": far}

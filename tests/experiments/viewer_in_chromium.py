@@ -1,6 +1,6 @@
 """The pages of rplan in a browser: `python tests/experiments/viewer_in_chromium.py --shots FOLDER`.
 
-Takes: find and fetch in the parking lot, and a plan of 200 rules that it makes. Gives: a table of points, met or not,
+Takes: find and fetch in the parking lot, and plans of 200 rules that it makes. Gives: a table of points, met or not,
 and pictures of every page; it exits with 1 where a point is not met. Leaves alone: the tests, which need no browser.
 
 The command `chromium` must be there. Each page is worked as a reader would, by mouse and keys; pictures are for people
@@ -18,6 +18,7 @@ from pathlib import Path
 from viewer.chromium import Tab, chromium
 from viewer.frames import draws
 from viewer.inspected import PLANS, inspects, viewed
+from viewer.large import large
 from viewer.live import breaks, viewing, watched
 from viewer.others import others
 from viewer.pictures import everywhere, moments, opened
@@ -27,12 +28,19 @@ from viewer.replayed import replay
 FETCH = "plans/find_and_fetch"
 SEED, LONG = 3, 12
 """Seeds of the run that is looked at, and of one of more than ten minutes."""
-PARTS = ("replay", "frames", "others", "live", "inspect")
+PARTS = ("replay", "frames", "others", "live", "inspect", "large")
 
 
 async def look(parts: list[str], work: Path, shots: Path | None, points: Points) -> None:
     """Try all parts in one browser, each in a tab of its own."""
-    tries = {"replay": _replayed, "frames": _drawn, "others": _others, "live": _live, "inspect": _inspected}
+    tries = {
+        "replay": _replayed,
+        "frames": _drawn,
+        "others": _others,
+        "live": _live,
+        "inspect": _inspected,
+        "large": _large,
+    }
     async with chromium() as browser:
         for part in parts:
             async with browser.tab() as tab:
@@ -78,6 +86,14 @@ async def _inspected(tab: Tab, work: Path, shots: Path | None, points: Points) -
     await viewed(tab, points, run)
     if shots:
         await everywhere(tab, shots, "many-rules")
+
+
+async def _large(tab: Tab, work: Path, shots: Path | None, points: Points) -> None:
+    page = await large(tab, points, work)
+    if shots:
+        for name, of in (("action", ""), ("percept", "&of=anything-is-too-close")):
+            await opened(tab, f"{page.as_uri()}#t=101.6&tab=circuit{of}")
+            await everywhere(tab, shots, f"large-{name}")
 
 
 def main() -> int:

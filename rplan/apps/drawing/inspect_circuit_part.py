@@ -144,7 +144,7 @@ class _Cut:
             case Op.INPUT:
                 inputs.append(self.circuit.inputs[cell.index])
             case Op.REGISTER:
-                inputs.append(Port(f"register {register_words(self.circuit.registers[cell.index].name)}"))
+                inputs.append(Port(register_words(self.circuit.registers[cell.index].name)))
             case _:
                 inputs.append(Port(f"… gate {net}"))
         return Cell(Op.INPUT, (), len(inputs) - 1)

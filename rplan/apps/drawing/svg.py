@@ -265,7 +265,11 @@ def _said(port: Port) -> str:
 
 
 def _short(name: str, longest: int) -> str:
-    return name if len(name) <= longest else f"{name[: longest - 1]}…"
+    """Without its end; between gates without its middle, since bits of a counter differ in their ends alone."""
+    if len(name) <= longest:
+        return name
+    tail = 12 if longest == LONGEST_INSIDE else 0
+    return f"{name[: longest - 1 - tail]}…{name[len(name) - tail :]}"
 
 
 def _escaped(text: str) -> str:
