@@ -172,6 +172,14 @@ class _Watch:
         return "; ".join(changed) or "what was kept changed"
 
 
+def lasted(seconds: float | None) -> str:
+    """A time for people: to a tenth, from a minute on with minutes; "-" where there is none."""
+    if seconds is None:
+        return "-"
+    minutes, rest = divmod(round(seconds, 1), 60.0)
+    return f"{int(minutes)} min {rest:04.1f} s" if minutes else f"{rest:.1f} s"
+
+
 def _sent(decision: Decision | None, channel: str) -> str:
     term = None if decision is None else decision.sent[channel]
     return OPEN if term is None else term.text

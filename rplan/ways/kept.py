@@ -52,7 +52,10 @@ def kept_by(ways: Ways) -> dict[str, tuple[int, ...]]:
 
 def kept(ways: Ways, text: str, registers: Sequence[bool]) -> Kept:
     """What these registers keep of a condition."""
-    numbers = kept_by(ways)[text]
+    return _kept(ways, text, kept_by(ways)[text], registers)
+
+
+def _kept(ways: Ways, text: str, numbers: Sequence[int], registers: Sequence[bool]) -> Kept:
     if ways.registers[numbers[0]].name == text:
         return Kept(text, registers[numbers[0]])
     return Kept(text, sum(registers[number] << place for place, number in enumerate(numbers)))
@@ -64,7 +67,7 @@ class Now:
     def __init__(self, ways: Ways, atoms: Sequence[bool], registers: Sequence[bool]) -> None:
         self._definitions = ways.goals.definitions
         self._atoms = {atom.text: value for atom, value in zip(ways.atoms, atoms, strict=False)}
-        self._kept = {text: kept(ways, text, registers).value for text in kept_by(ways)}
+        self._kept = {text: _kept(ways, text, numbers, registers).value for text, numbers in kept_by(ways).items()}
 
     def holds(self, condition: Condition) -> bool:
         """Whether it holds in this tick."""

@@ -77,11 +77,18 @@ class Reasons:
         return Why(
             way,
             self._served(way),
-            tuple(Literal(self.ways.atoms[number].text, atoms[number]) for number in literals),
+            self._said(literals, atoms),
             smallest,
             tuple(kept(self.ways, text, registers) for text in texts),
             lost(self.ways, way, atoms, registers),
         )
+
+    def literals(self, atoms: Sequence[bool], registers: Sequence[bool]) -> tuple[Literal, ...]:
+        """The literals of `why` alone: what of the past matters takes a question for each condition with memory."""
+        return self._said(self._enough(atoms, registers, past_too=False)[0], atoms)
+
+    def _said(self, literals: Sequence[int], atoms: Sequence[bool]) -> tuple[Literal, ...]:
+        return tuple(Literal(self.ways.atoms[number].text, atoms[number]) for number in literals)
 
     def _served(self, way: TakenWay) -> tuple[Served, ...]:
         places: dict[str, Span] = {}
@@ -90,7 +97,9 @@ class Reasons:
                 places.setdefault(node.goal.head, node.goal.rule_span)
         return tuple(Served(head, places[head]) for head in way.rules)
 
-    def _enough(self, atoms: Sequence[bool], registers: Sequence[bool]) -> tuple[list[int], bool, list[str]]:
+    def _enough(
+        self, atoms: Sequence[bool], registers: Sequence[bool], past_too: bool = True
+    ) -> tuple[list[int], bool, list[str]]:
         every = (*atoms, *(False for _ in self.ways.atoms[len(atoms) :]))
         held = (*registers, *(False for _ in self.ways.registers[len(registers) :]))
         values = self.ways.guards.evaluate(every, held)
@@ -107,7 +116,8 @@ class Reasons:
         near = _Nearer(self.ways, atoms, held, [values[guard] for guard in self._guards], self._guards)
         try:
             literals, smallest = _Smallest(self.solver, wanted, past, near).search()
-            return literals, smallest, self._texts([wanted[number] for number in literals], past)
+            texts = self._texts([wanted[number] for number in literals], past) if past_too else []
+            return literals, smallest, texts
         finally:
             self.solver.pop()
 

@@ -22,6 +22,7 @@ from rplan.circuit.circuit import Circuit
 from rplan.circuit.evaluate import evaluate
 from rplan.driver import Compiled, compile_plan
 from rplan.lang.source import Source
+from rplan.ways.why import Reasons
 
 
 def many(rules: int) -> str:
@@ -217,3 +218,12 @@ def test_a_run_of_a_large_plan_is_told_the_circuit_to_draw_parts_of() -> None:
     told = telling.circuit(LARGE)
     assert (told["svg"], told["cells"], told["part"]) == ("", [], compact(LARGE.circuit))
     assert "part" not in telling.circuit(compile_plan(Source("small.rplan", SMALL)))
+
+
+def test_a_page_is_told_the_conditions_that_why_gives() -> None:
+    plan = compile_plan(Source("small.rplan", SMALL))
+    loser, reasons = telling.Loser(plan), Reasons(plan.ways)
+    for inputs, kept in (("00", "0"), ("01", "1"), ("10", "1"), ("11", "0")):
+        bits = [bit == "1" for bit in inputs]
+        wanted = reasons.why(bits, [kept == "1"]).literals
+        assert loser.enough(inputs, kept) == [{"condition": one.text, "value": one.value} for one in wanted]

@@ -113,7 +113,9 @@ def test_so_is_a_fault_of_a_library_that_is_installed(
     package = tmp_path / "their_arm"
     package.mkdir()
     (package / "__init__.py").write_text("", encoding="utf-8")
-    (package / "inside.py").write_text("def deep():\n    return __import__('fractions').Fraction(1, 0)\n", encoding="utf-8")
+    (package / "inside.py").write_text(
+        "def deep():\n    return __import__('fractions').Fraction(1, 0)\n", encoding="utf-8"
+    )
     library = "from behaviours.interface import Library\nfrom their_arm.inside import deep\n"
     library += "def build(values, workshop):\n    return deep()\nARM = Library('arm', '', (), (), build)\n"
     (package / "offers.py").write_text(library, encoding="utf-8")

@@ -206,7 +206,7 @@ def test_an_episode_gives_verdict_and_trace(room: PlanUnderTest) -> None:
 def test_an_episode_of_a_plan_that_does_not_fetch_is_not_said_to_be_on_its_way_to_a_donor() -> None:
     run = (
         PlanUnderTest.of(Path(__file__).parents[2] / "plans" / "make_room" / "make_room.rplan")
-        .episode("visit.yaml")
+        .episode(Path(__file__).parents[1] / "data" / "visit.yaml")
         .run(until=1)
     )
     with pytest.raises(AssertionError, match="not done after 1 s: out of time at 1 s before it came to the donor"):

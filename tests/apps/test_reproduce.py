@@ -218,7 +218,7 @@ def test_one_episode_is_played_on_a_page(tmp_path: Path) -> None:
     page = tmp_path / "x.html"
     result = reproduce("T1", "--case", "short", "--seed", "3", "--replay", str(page))
     assert result.exit_code == 0
-    assert result.stdout.startswith("T1 (paper), short, seed 3: not done: out of time at 2 s")
+    assert result.stdout.startswith("T1 (paper), short, seed 3: done in 2.0 s\n")
     assert page.read_text(encoding="utf-8").startswith("<!doctype html>")
 
 

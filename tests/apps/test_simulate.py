@@ -16,6 +16,7 @@ from click.testing import CliRunner, Result
 from behaviours.competences.fixate import Fixate
 from rplan.apps import files
 from rplan.apps.cli import cli
+from rplan.apps.simulation import lasted
 from rplan.apps.wiring import PlanBrain
 from sim.recording import read
 
@@ -295,3 +296,11 @@ def test_a_scenario_of_another_plan_is_found_by_its_folder_and_name() -> None:
     without = simulate("fetch_by_operators", "--until", "1")
     assert without.exit_code == 2
     assert "find_and_fetch/parking_lot, make_room/visit" in without.stderr
+
+
+@pytest.mark.parametrize(
+    ("seconds", "said"),
+    [(None, "-"), (0.04, "0.0 s"), (59.94, "59.9 s"), (59.96, "1 min 00.0 s"), (239.96, "4 min 00.0 s")],
+)
+def test_times_are_rounded_before_they_are_taken_apart(seconds: float | None, said: str) -> None:
+    assert lasted(seconds) == said

@@ -23,7 +23,7 @@ from rich.text import Text
 
 from rplan.apps import talk
 from rplan.apps.files import InputError, plan_file, scenario_file, unreadable
-from rplan.apps.simulation import Run, World, simulate, world_in
+from rplan.apps.simulation import Run, World, lasted, simulate, world_in
 from rplan.apps.viewer.page import write_page
 from rplan.driver import Compiled
 from rplan.lang.diagnostic import PlanError
@@ -141,13 +141,7 @@ def _draw(recording: Path, replay: Path | None, plot: Path | None, verdict: str)
 
 def _line(run: Run) -> str:
     verdict = run.verdict
-    return f"done in {_time(verdict.duration)}" if verdict.done else f"not done: {verdict.reason}"
-
-
-def _time(seconds: float | None) -> str:
-    if seconds is None:
-        return "-"
-    return f"{int(seconds // 60)} min {seconds % 60:04.1f} s" if seconds >= 60 else f"{seconds:.1f} s"
+    return f"done in {lasted(verdict.duration)}" if verdict.done else f"not done: {verdict.reason}"
 
 
 def phases(run: Run) -> list[tuple[str, float | None]]:
@@ -189,9 +183,9 @@ def _achieved(run: Run) -> str:
         case "fetch":
             return "the object was fetched and brought home"
         case "reach":
-            return f"the goal was reached in {_time(run.verdict.duration)}"
+            return f"the goal was reached in {lasted(run.verdict.duration)}"
         case "round":
-            return f"round and back in {_time(run.verdict.duration)}"
+            return f"round and back in {lasted(run.verdict.duration)}"
         case "none":
             return "the time is over; the scenario sets no task"
 
@@ -203,7 +197,7 @@ def _verdict_table(run: Run) -> Table:
     table.add_column()
     table.add_column(justify="right")
     for name, seconds in phases(run):
-        table.add_row(name, _time(seconds))
+        table.add_row(name, lasted(seconds))
     table.add_row("distance", f"{verdict.distance:.1f} m")
     table.add_row("contacts", f"{len(verdict.contacts)} ({into} driven into)" if verdict.contacts else "0")
     table.add_row("smallest clearance", f"{verdict.smallest_clearance:.2f} m")
@@ -219,7 +213,7 @@ def _share_table(run: Run) -> Table:
     for name in ("ticks", "time", "switches to it"):
         table.add_column(name, justify="right")
     for name, share in run.shares.items():
-        table.add_row(name, f"{share.ticks:,}", _time(share.ticks * run.period), f"{share.switches:,}")
+        table.add_row(name, f"{share.ticks:,}", lasted(share.ticks * run.period), f"{share.switches:,}")
     return table
 
 

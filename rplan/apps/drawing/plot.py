@@ -178,7 +178,8 @@ def name_of(act: str | None) -> str:
 
 def clock(seconds: float) -> str:
     """Minutes and seconds."""
-    return f"{int(seconds // 60)}:{seconds % 60:04.1f}"
+    minutes, rest = divmod(round(seconds, 1), 60.0)
+    return f"{int(minutes)}:{rest:04.1f}"
 
 
 # --- the lot --------------------------------------------------------------------------------------

@@ -19,7 +19,7 @@ from rplan.apps.files import InputError
 from rplan.apps.reproduce.experiment import Asked, plan_at, scenario_at, variant_of
 from rplan.apps.reproduce.row import Case, Seen
 from rplan.apps.reproduce.watch import watch
-from rplan.apps.simulation import Run, World, load_world, simulate
+from rplan.apps.simulation import Run, World, lasted, load_world, simulate
 from rplan.apps.sweep.work import changed
 from rplan.apps.viewer.page import write_page
 from rplan.apps.wiring import compile_file
@@ -72,8 +72,7 @@ def recorded(shown: Shown, seed: int) -> Iterator[tuple[Run, Recording]]:
 def in_words(run: Run) -> str:
     """What came of it."""
     verdict = run.verdict
-    minutes = f"{int(verdict.duration // 60)} min {verdict.duration % 60:04.1f} s"
-    return f"done in {minutes}" if verdict.done else f"not done: {verdict.reason}"
+    return f"done in {lasted(verdict.duration)}" if verdict.done else f"not done: {verdict.reason}"
 
 
 def seen(shown: Shown, seed: int) -> Seen:

@@ -74,7 +74,7 @@ class Loser:
             if ways.asking > MOST_INPUTS or len(self._enough) >= MOST_ASKED:
                 return []
             self._reasons = self._reasons or Reasons(ways)
-            found = self._reasons.why(_bits(inputs), _bits(registers)).literals
+            found = self._reasons.literals(_bits(inputs), _bits(registers))
             self._enough[key] = [{"condition": one.text, "value": one.value} for one in found]
         return self._enough[key]
 
