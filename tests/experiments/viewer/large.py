@@ -17,6 +17,7 @@ from viewer.inspected import FETCH, RULES
 from viewer.points import ROOT, Points, rplan
 from viewer.replayed import now
 
+from rplan.apps.drawing.inspect_circuit_part import choice, part
 from rplan.apps.wiring import compile_file
 from rplan.circuit.cell import Op
 from rplan.circuit.circuit import Circuit
@@ -24,11 +25,14 @@ from sim.recording import read
 
 SEED, UNTIL, LEAST, MOST = 3, 120, 1800, 300
 """The run, the gates that the plan has at least, and those that a drawing has at most unless more are asked for."""
+PAGE = 100
+"""Gates that the page shows at first."""
 SCENARIO = ROOT / "plans" / "find_and_fetch" / "parking_lot.yaml"
 SAID = "document.querySelector('.part .said').textContent"
 GATES = "document.querySelectorAll('.part .cell > path.gate').length"
 LIT = """[...document.querySelectorAll('.part [data-net]')]
     .map(g => [Number(g.dataset.net), g.classList.contains('on')])"""
+NUMBERS = "[...document.querySelectorAll('.part .cell:has(> path.gate)')].map(g => Number(g.dataset.net))"
 STUB = """(() => { const paper = document.querySelector('.part .paper'), inside = paper.getBoundingClientRect();
     for (const stub of document.querySelectorAll('.part .cell.stub > circle')) {
       stub.scrollIntoView({block: 'center', inline: 'center'}); const b = stub.getBoundingClientRect();
@@ -66,6 +70,7 @@ async def large(tab: Tab, points: Points, work: Path) -> Path:
     run, page = await _run(plan)
     await _opens(tab, points, page, gates)
     await _searched(tab, points)
+    await _cut(tab, points, circuit)
     await _followed(tab, points)
     await _live(tab, points, run, circuit)
     await _plays(tab, points, page)
@@ -114,6 +119,19 @@ async def _searched(tab: Tab, points: Points) -> None:
     ):
         said, drawn = await _sought(tab, wanted), await tab.eval(GATES)
         points.add("l", f"/ finds {wanted}", told in said and 0 < drawn <= MOST, said)
+
+
+async def _cut(tab: Tab, points: Points, circuit: Circuit) -> None:
+    """The page takes the gates that the command would."""
+    faults, seen = list[str](), 0
+    for wanted in ("action", "anything-is-too-close", "report-150=true", "gate 1500"):
+        await _sought(tab, wanted)
+        found = part(circuit, choice(circuit, wanted), PAGE)
+        ours = [net for net, cell in zip(found.numbers, found.circuit.cells, strict=True) if cell.operands]
+        theirs = sorted(await tab.eval(NUMBERS))
+        seen += len(theirs)
+        faults += [] if ours == theirs else [f"{wanted}: {len(ours)}, not {len(theirs)}"]
+    points.add("l", "a part has the gates that `rplan inspect --of` takes", not faults and seen > PAGE, faults or seen)
 
 
 async def _followed(tab: Tab, points: Points) -> None:
