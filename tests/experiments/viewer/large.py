@@ -9,7 +9,7 @@ import asyncio
 from contextlib import suppress
 from pathlib import Path
 from statistics import median
-from typing import Any
+from typing import Any, cast
 
 from viewer.chromium import WIDE, Tab
 from viewer.frames import BUDGET_MS, OPEN_MS, STOPWATCH
@@ -157,7 +157,7 @@ async def _live(tab: Tab, points: Points, run: Path, circuit: Circuit) -> None:
         for share in (0.02, 0.5, 0.86):
             await tab.click("#timeline", share)
             at = await now(tab)
-            values = _values(circuit, min(every, key=lambda tick: abs(float(tick["t"]) - at)))
+            values = _values(circuit, min(every, key=lambda tick: abs(cast(float, tick["t"]) - at)))
             shown = await tab.eval(LIT)
             faults += [f"net {net} at {at} s" for net, on in shown if on is not values[net]]
             seen, lit = seen + len(shown), lit + sum(on for _, on in shown)
