@@ -239,20 +239,35 @@ def _walked(stream: BinaryIO, size: int, topic: _Topic) -> list[Place]:
     return places
 
 
-def latest(path: Path, topic: str, until: float, *, cut_short: bool = False) -> Iterator[Found]:
-    """The messages of a topic up to a log time [ns], the latest first; what is later is not unpacked.
+@dataclass(frozen=True, slots=True)
+class Back:
+    """The way back through a topic's messages; what is in the file is looked up once."""
 
-    cut_short: the file has no summary; its chunks are walked to the break. Raises one of `BROKEN` where the file cannot
-    be read further.
-    """
+    path: Path
+    topic: _Topic
+    places: tuple[Place, ...]
+    cut_short: bool
+
+    def latest(self, until: float) -> Iterator[Found]:
+        """The messages up to a log time [ns], the latest first; what is later is not unpacked.
+
+        Raises one of `BROKEN` where the file cannot be read further.
+        """
+        with self.path.open("rb", buffering=4096) as stream:  # back and forth: much at once would be read in vain
+            for place in reversed(self.places):
+                if place.start <= until:
+                    found = self.topic.found(_chunk(stream, place))
+                    yield from reversed([one for one in found if one[0] <= until])
+        if not (self.places or self.cut_short):  # nothing is in chunks
+            yield from reversed([one for one in messages(self.path, self.topic.name) if one[0] <= until])
+
+
+def back(path: Path, topic: str, *, cut_short: bool = False) -> Back:
+    """The way back. cut_short: the file has no summary; its chunks are walked to the break. Raises one of `BROKEN`."""
     found, size = _Topic(topic, set()), path.stat().st_size
-    with path.open("rb", buffering=4096) as stream:  # back and forth: much at once would be read in vain
+    with path.open("rb", buffering=4096) as stream:
         places = (_walked if cut_short else _index)(stream, size, found)
-        for place in reversed(places):
-            if place.start <= until:
-                yield from reversed([one for one in found.found(_chunk(stream, place)) if one[0] <= until])
-    if not (places or cut_short):  # nothing is in chunks
-        yield from reversed([one for one in messages(path, topic) if one[0] <= until])
+    return Back(path, found, tuple(places), cut_short)
 
 
 def _chunk(stream: BinaryIO, place: Place) -> bytes:

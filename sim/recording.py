@@ -2,7 +2,7 @@
 
 Takes: a header, and tick by tick the state of the world, the brain's note (JSON text) and the Reading. Gives: a file
 that is the same to the byte for the same run, since every stamp in it is simulated; and the ways back: `read`,
-`readings` and `latest`. Leaves alone: what world and brain put into their parts, the judgement of the run, how it is
+`readings` and `backwards`. Leaves alone: what world and brain put into their parts, the judgement of the run, how it is
 shown.
 
 Topics: `/header` once and `/tick` (JSON; tick n carries `tick`, `t` [s], `world`, `plan`), `/reading` (JSON, all that
@@ -314,14 +314,28 @@ def readings(path: Path | str) -> Iterator[Reading]:
     yield from found
 
 
-def latest(path: Path | str, until: float = math.inf) -> Iterator[str]:
-    """The JSON texts of the ticks up to a time [s], the latest first; what is later is not unpacked.
+@dataclass(frozen=True, slots=True)
+class Backwards:
+    """The ticks of a recording from any time back, as their JSON texts."""
 
-    Raises RecordingError where the file is no recording or is damaged where it is looked at; OSError where it cannot
-    be opened.
+    _back: chunks.Back
+
+    def latest(self, until: float = math.inf) -> Iterator[str]:
+        """Those up to a time [s], the latest first; what is later is not unpacked.
+
+        Raises RecordingError where the file is damaged where it is looked at; OSError where it cannot be opened.
+        """
+        with _told(self._back.path, self._back.cut_short):
+            for _, data in self._back.latest(until * 1e9 + 0.5):
+                yield data.decode()
+
+
+def backwards(path: Path | str) -> Backwards:
+    """The ticks of a recording, to be looked at from its end.
+
+    Raises RecordingError where the file is no recording or its index is damaged; OSError where it cannot be opened.
     """
     path = Path(path)
     cut_short = _is_cut_short(path)
-    with _told(path, cut_short):
-        for _, data in chunks.latest(path, "/tick", until * 1e9 + 0.5, cut_short=cut_short):
-            yield data.decode()
+    with _told(path, cut_short=False):
+        return Backwards(chunks.back(path, "/tick", cut_short=cut_short))

@@ -32,7 +32,7 @@ from rplan.ways.reduce import Ways
 from rplan.ways.situations import atom_value, nothing
 from rplan.ways.why_not import Wanted
 from sim.chunks import MAGIC
-from sim.recording import RecordingError, latest, read
+from sim.recording import Backwards, RecordingError, backwards, read
 
 LATE = 1e-6
 """Times nearer than this [s] are one."""
@@ -141,21 +141,22 @@ class _Before:
 def _recorded(path: Path, at: float | None) -> Moment:
     begun = read(path)
     compiled = _compiled_again(path, begun.header.get("plan"))
-    ticks = _ticks_back(path, math.nan if at is None else at + LATE)
+    run = backwards(path)
+    ticks = _ticks_back(run, math.nan if at is None else at + LATE)
     found, period = next(ticks, None), compiled.goals.period
-    if at is None or found is None or (at > found.time + period + LATE and at > _last(path) + period + LATE):
-        lasts = f"{path} lasts from 0 s to {_last(path):g} s{', where it was cut short' if begun.cut_short else ''}"
+    if at is None or found is None or (at > found.time + period + LATE and at > _last(run) + period + LATE):
+        lasts = f"{path} lasts from 0 s to {_last(run):g} s{', where it was cut short' if begun.cut_short else ''}"
         raise InputError(f"say when: --at SECONDS ({lasts})" if at is None else f"--at {at:g}: {lasts}")
     atoms, registers = _bits(path, found.plan, compiled)
     percepts = _percepts(path, found.plan, compiled, atoms)
-    since = _since_as_noted(path, found, period) or _since(found, ticks)
+    since = _since_as_noted(run, found, period) or _since(found, ticks)
     forced = _forced(found.text, compiled)
     return Moment(compiled, found.number, found.time, atoms, registers, found.shown, since, percepts, forced)
 
 
-def _last(path: Path) -> float:
+def _last(run: Backwards) -> float:
     """When the plan decided last [s]."""
-    return next((one.time for one in _ticks_back(path, math.inf)), 0.0)
+    return next((one.time for one in _ticks_back(run, math.inf)), 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,11 +181,11 @@ class _Recorded:
         return plan
 
 
-def _ticks_back(path: Path, until: float) -> Iterator[_Recorded]:
+def _ticks_back(run: Backwards, until: float) -> Iterator[_Recorded]:
     """The ticks up to a time [s] in which the plan decided, the latest first."""
     known: str = ""
     shown: Mapping[str, str | None] = {}
-    for text in latest(path, until):
+    for text in run.latest(until):
         part = outputs_and_sent(text)
         if not part or part != known:
             known, parts = _parts(text, part)
@@ -204,7 +205,7 @@ def _parts(text: str, part: str) -> tuple[str, Mapping[str, object] | None]:
     return "", plan if isinstance(tick.get("t"), int | float) and isinstance(plan, Mapping) else None
 
 
-def _since_as_noted(path: Path, found: _Recorded, period: float) -> Mapping[str, Since] | None:
+def _since_as_noted(run: Backwards, found: _Recorded, period: float) -> Mapping[str, Since] | None:
     """Since when each output of a tick has its value, by the numbers that the tick itself gives; None where it gives
     none, or others than the ticks that they lead to.
     """
@@ -217,7 +218,7 @@ def _since_as_noted(path: Path, found: _Recorded, period: float) -> Mapping[str,
         if number not in known:
             if not isinstance(number, int) or not 0 <= number <= found.number:
                 return None
-            back = _ticks_back(path, found.time - (found.number - number) * period + LATE)
+            back = _ticks_back(run, found.time - (found.number - number) * period + LATE)
             known[number] = next(back, found), next(back, None)
         then, before = known[number]
         if then.number != number or then.shown.get(output) != value:

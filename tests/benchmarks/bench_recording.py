@@ -29,7 +29,7 @@ from rplan.goals.condition import Percept
 from rplan.runtime.controller import Tick
 from rplan.runtime.trace import Trace
 from sim.episode import Episode
-from sim.recording import Recorder, json_text, latest, read
+from sim.recording import Recorder, backwards, json_text, read
 
 ROOT = Path(__file__).parents[2]
 PATROL = ROOT / "plans" / "patrol" / "patrol.rplan"
@@ -75,7 +75,7 @@ def questions(path: Path) -> Iterator[tuple[str, Seconds]]:
     plan = PATROL.parent
     yield "rplan why --help", timed(command, "why", "--help")
     yield "rplan why of a plan alone", timed(command, "why", plan, "--given", "")
-    end = json.loads(next(latest(path)))["t"] - 1
+    end = json.loads(next(backwards(path).latest()))["t"] - 1
     for name, at in (("start", 0.0), ("middle", end / 2), ("end", end)):
         yield f"rplan why, {name} ({at:.0f} s)", timed(command, "why", path, "--at", str(at))
     wish = ("goal=(the-charger)", "--at", str(end / 2))
@@ -88,7 +88,7 @@ def questions(path: Path) -> Iterator[tuple[str, Seconds]]:
 
 def passes(path: Path) -> Iterator[tuple[str, Seconds]]:
     """Whole passes through the file in this process."""
-    yield "every tick backwards, as text", timed(lambda: sum(1 for _ in latest(path)))
+    yield "every tick backwards, as text", timed(lambda: sum(1 for _ in backwards(path).latest()))
     yield "every tick forwards, decoded", timed(lambda: sum(1 for _ in read(path).ticks))
     yield "every reading", timed(lambda: sum(1 for _ in read(path).readings))
 

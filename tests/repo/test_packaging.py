@@ -91,7 +91,12 @@ def test_the_wheel_has_the_packages_and_the_plans_and_nothing_else(root: Path, t
     packages = [name for folder in ("rplan", "behaviours", "sim") for name in contents(root, folder, IN_PACKAGES)]
     plans = [f"rplan/_{name}" for name in contents(root, "plans", IN_PLANS)]
     assert sorted(names) == sorted(packages + plans)
-    for one in ("rplan/_plans/find_and_fetch/parking_lot.yaml", "sim/replay.html", "rplan/apps/viewer/live.js"):
+    for one in (
+        "rplan/_plans/find_and_fetch/parking_lot.yaml",
+        "sim/replay.html",
+        "sim/circuit.js",
+        "rplan/apps/viewer/live.js",
+    ):
         assert one in names
 
 

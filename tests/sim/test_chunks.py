@@ -14,7 +14,7 @@ from mcap.reader import make_reader
 from mcap.writer import CompressionType, IndexType, Writer
 
 from sim import chunks
-from sim.recording import Recorder, RecordingError, latest, read
+from sim.recording import Recorder, RecordingError, backwards, read
 
 TICKS = 120
 DATA = Path(__file__).parents[1] / "data" / "recordings"
@@ -69,21 +69,21 @@ def places(path: Path) -> Iterator[tuple[int, int]]:
 
 
 def numbers(path: Path, until: float = math.inf) -> list[int]:
-    return [json.loads(text)["tick"] for text in latest(path, until)]
+    return [json.loads(text)["tick"] for text in backwards(path).latest(until)]
 
 
 @pytest.mark.parametrize("topic", ["/header", "/tick", "/pose", "/nothing"])
 def test_the_messages_are_those_that_the_general_reader_finds(path: Path, topic: str) -> None:
     expected = general(path, topic)
     assert list(chunks.messages(path, topic)) == expected
-    assert list(chunks.latest(path, topic, math.inf)) == expected[::-1]
+    assert list(chunks.back(path, topic).latest(math.inf)) == expected[::-1]
 
 
 def test_a_file_of_the_second_format_is_read_both_ways() -> None:
     whole = DATA / "format_2.mcap"
     expected = general(whole, "/tick")
     assert list(chunks.messages(whole, "/tick")) == expected
-    assert list(chunks.latest(whole, "/tick", math.inf)) == expected[::-1]
+    assert list(chunks.back(whole, "/tick").latest(math.inf)) == expected[::-1]
 
 
 @pytest.mark.parametrize("until", [0.0, 0.05, 0.1, 3.14, 11.9, 99.0])
@@ -96,8 +96,8 @@ def test_the_way_back_begins_with_the_last_tick_that_is_not_later(path: Path, un
 def test_a_message_at_the_very_time_counts(path: Path, tmp_path: Path) -> None:
     bare = written(tmp_path / "bare.mcap", CompressionType.NONE, chunking=False)
     for file in (path, bare):
-        assert next(chunks.latest(file, "/tick", 10**8))[0] == 10**8
-        assert next(chunks.latest(file, "/tick", 10**8 - 1))[0] == 0
+        assert next(chunks.back(file, "/tick").latest(10**8))[0] == 10**8
+        assert next(chunks.back(file, "/tick").latest(10**8 - 1))[0] == 0
 
 
 def test_an_index_that_speaks_of_what_is_beyond_the_end_is_told(path: Path) -> None:
@@ -110,7 +110,7 @@ def test_an_index_that_speaks_of_what_is_beyond_the_end_is_told(path: Path) -> N
     struct.pack_into("<I", data, footer + chunks.FOOT.size - 4, 0)  # no checksum
     path.write_bytes(data)
     with pytest.raises(RecordingError, match="the index speaks of a chunk beyond the end"):
-        list(latest(path))
+        list(backwards(path).latest())
 
 
 def test_what_is_not_asked_is_not_unpacked(path: Path) -> None:
@@ -118,12 +118,12 @@ def test_what_is_not_asked_is_not_unpacked(path: Path) -> None:
     every = [*places(path)]
     for offset, length in (every[-2], every[3]):
         damaged(path, offset + length // 2)
-    ticks = latest(path, 6.0)
+    ticks = backwards(path).latest(6.0)
     assert [json.loads(next(ticks))["tick"] for _ in range(20)] == [*range(60, 40, -1)]
     with pytest.raises(RecordingError, match=r"run\.mcap is damaged .*rplan repair"):
         list(ticks)
     with pytest.raises(RecordingError, match="is damaged"):
-        list(latest(path))
+        list(backwards(path).latest())
 
 
 def test_a_file_that_was_cut_short_anywhere_gives_the_same_both_ways(path: Path) -> None:
