@@ -26,8 +26,9 @@ Reason = Word["satisfied", "nothing", "condition", "conflict", "alternative", "h
 class Lost:
     """A goal that set nothing. because: in words; condition: of the `if` that decided, "" where none did.
 
-    reason: `satisfied`, the fact that operators are to bring about holds; `nothing`, its rule asks for nothing in this
-    situation, be it that all is well or that it stepped aside; `condition`, another branch is taken; `conflict`, a
+    reason: `satisfied`, the fact that operators are to bring about holds, or nothing has to be done to maintain what is
+    to be maintained; `nothing`, the rule of what is to be achieved asks for nothing in this situation, be it that it is
+    achieved or that the rule steps aside; `condition`, another branch is taken; `conflict`, a
     member of a `prio-and` is given up; `alternative`, another way of an `or` is taken; `hole`, no way is open.
     literals: what makes the condition as it is. part_of: the goal that lost as a whole, where this is a part of it.
     span: of the goal; by: of what stood against it.
@@ -154,13 +155,18 @@ class _Looking:
         return any(map(self._does_something, self.ways.layout.inside[number]))
 
     def _asks_for_nothing(self, node: Node) -> Lost:
-        """Its last conditions lead to nothing. Only of operators is it known that the goal then holds (L20)."""
+        """Its last conditions lead to nothing.
+
+        What is to be maintained then is as it should be, and so is what operators would bring about (L20); of a rule
+        for what is to be achieved that is not known.
+        """
         asked = [self.nodes[number].goal for number in self._last_ifs(node.number, None)]
         conditions = [goal for goal in asked if isinstance(goal, If)]
         literals = tuple(dict.fromkeys(one for goal in conditions for one in self.now.deciding(goal.condition)))
         by_operators = isinstance(node.goal, Reduced) and node.goal.rule_span not in self.rules
-        reason: Reason = "satisfied" if by_operators else "nothing"
-        words = "already satisfied" if by_operators else "asks for nothing"
+        holds = by_operators or label(node.goal).startswith("(maint ")
+        reason: Reason = "satisfied" if holds else "nothing"
+        words = "already satisfied" if holds else "asks for nothing"
         words = f"{words}: {said(literals)}" if literals else words
         condition = print_condition(conditions[0].condition) if len(conditions) == 1 else ""
         by = conditions[0].span if conditions else node.goal.span

@@ -84,7 +84,7 @@ def test_a_tick_of_a_recording_is_explained_from_what_stands_in_it(recording: Pa
     assert found["smallest"]
     assert found["since"]["action"] == {"tick": 1, "time": 0.1, "before": "(start-ir-search)", "first": False}
     lost = {one["goal"]: one for one in found["lost"]}
-    assert lost["(maint runaway)"]["reason"] == "nothing"
+    assert lost["(maint runaway)"]["reason"] == "satisfied"
     assert lost["(ach fetch-widget&go-home)"]["because"] == "(donor-has-been-located) is false"
     assert lost["(do goal (the-robots-home-position))"]["part_of"] == "(ach fetch-widget&go-home)"
     assert [rule["rule"] for rule in found["rules"]] == found["way"]["rules"]
@@ -96,7 +96,7 @@ def test_people_read_the_same(recording: Path) -> None:
     assert lines[0] == "find-and-fetch at 2.2 s (tick 22)"
     set_by = "set by (maint find-donor-direction), find_and_fetch.rplan:47"
     assert lines[1] == f"  action is (continue-ir-search): {set_by}; since 0.1 s, instead of (start-ir-search)"
-    assert "  (maint runaway), find_and_fetch.rplan:71: asks for nothing: (anything-is-too-close) is false" in lines
+    assert "  (maint runaway), find_and_fetch.rplan:71: already satisfied: (anything-is-too-close) is false" in lines
     now = run("why", recording, "--at", "0.1").stdout
     assert "; now, instead of (start-ir-search)" in now
     assert "instead" not in run("why", recording, "--at", "0").stdout

@@ -80,9 +80,9 @@ def test_every_goal_that_lost_says_the_one_thing_against_it() -> None:
     assert found.lost[0].by.line == 2, "where it is set otherwise"
     _, calm = asked(text.replace("(ach drive) (ach rest)", "(ach rest)"), {})
     said = lost(calm)
-    assert said["(maint safe)"] == ("nothing", "asks for nothing: (close) is false")
+    assert said["(maint safe)"] == ("satisfied", "already satisfied: (close) is false")
     assert said["(ach sleep)"] == ("condition", "(tired) is false")
-    assert said["(maint order)"] == ("nothing", "asks for nothing: (close) is false")
+    assert said["(maint order)"] == ("satisfied", "already satisfied: (close) is false")
     assert said["(do z (tidy))"][0] == "condition"
     assert [rule.head for rule in calm.served] == ["(maint safe)", "(ach rest)", "(maint order)"]
     assert calm.served[0].span.line == 2
@@ -131,9 +131,9 @@ def test_a_hole_among_alternatives_alone_says_so() -> None:
     assert {one.because for one in found.lost} == {because}
 
 
-def test_a_goal_that_always_asks_for_nothing_says_no_condition() -> None:
+def test_a_goal_that_is_always_satisfied_says_no_condition() -> None:
     _, found = asked("(defgoalr (maint calm) (do anything)) (goalem (and (maint calm) (do x on)))", {})
-    assert lost(found) == {"(maint calm)": ("nothing", "asks for nothing")}
+    assert lost(found) == {"(maint calm)": ("satisfied", "already satisfied")}
 
 
 def test_a_goal_that_stepped_aside_is_not_said_to_be_satisfied() -> None:
@@ -158,7 +158,7 @@ def test_a_goal_of_operators_is_satisfied_where_its_fact_holds() -> None:
     """
     held = lost(asked(text, {"(held)": True})[1])
     assert held["(ach held)"] == ("satisfied", "already satisfied: (held) is true")
-    assert held["(maint all)"] == ("nothing", "asks for nothing: (held) is true")
+    assert held["(maint all)"] == ("satisfied", "already satisfied: (held) is true")
     assert "(ach held)" not in lost(asked(text, {"(near)": True})[1])
 
 
