@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import click
 
 from rplan.apps import talk
@@ -17,8 +19,8 @@ FORMS = ("sexp", "json", "dot", "svg", "python", "c")
 @click.option("--allow-holes", is_flag=True, help="A hole is a warning.")
 @click.option("--json", "as_json", is_flag=True, help="The report for programs.")
 @talk.with_libraries
-def command(plan: str, form: str | None, output: str | None, strict: bool, allow_holes: bool, as_json: bool) -> None:
+def command(**asked: Any) -> None:
     """Compile PLAN. Without --emit a report: ways, gates, depth, operations a tick."""
     from rplan.apps.doing.compile import run
 
-    run(plan, form, output, strict, allow_holes, as_json)
+    run(**asked)

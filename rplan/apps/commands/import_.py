@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -26,23 +27,11 @@ MODELS = ("denning", "packbot", "ravon", "xrhex", "jackal", "pioneer", "turtlebo
 )
 @click.option("--summary", "as_summary", is_flag=True, help="Say how much there is in it instead of the text.")
 @click.option("--json", "as_json", is_flag=True, help="The summary for programs.")
-def command(
-    file: str,
-    output: Path | None,
-    form: str | None,
-    world: int | None,
-    robot: str,
-    model: str,
-    start: tuple[float, float, float] | None,
-    resolution: float | None,
-    least_area: float,
-    as_summary: bool,
-    as_json: bool,
-) -> None:
+def command(**asked: Any) -> None:
     """Make a scenario of FILE: a Stage world, a ROS map, a picture, a maze, a BARN world; or a recording of a log.
 
     Without -o the scenario goes to stdout. What of FILE is not in it is said on stderr and stands in the scenario.
     """
     from rplan.apps.doing.import_ import run
 
-    run(file, output, form, world, robot, model, start, resolution, least_area, as_summary, as_json)
+    run(**asked)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -23,13 +24,11 @@ STYLES = ("paper", "ros")
 )
 @click.option("--view", metavar="NAME", help="Which of several maps. Default: the first.")
 @click.option("--json", "as_json", is_flag=True, help="What is in it, for programs.")
-def command(
-    recording: Path, output: Path | None, style: str, at: float | None, view: str | None, as_json: bool
-) -> None:
+def command(**asked: Any) -> None:
     """Put together the map in RECORDING from the patches that the robot sent, and write it.
 
     Its plan must use the library mapping. The picture also shows the ways: the true one, and those the robot believed.
     """
     from rplan.apps.doing.map import run
 
-    run(recording, output, style, at, view, as_json)
+    run(**asked)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -20,7 +21,7 @@ MOST = 1_000
 @click.option("--at-least", type=click.FloatRange(0, 100), help="Exit code 1 where a smaller share [%] is noticed.")
 @click.option("--json", "as_json", is_flag=True, help="For programs.")
 @talk.with_libraries
-def command(plan: str, tests: tuple[Path, ...], most: int, at_least: float | None, as_json: bool) -> None:
+def command(**asked: Any) -> None:
     """Change PLAN in one place at a time and run its tests, properties and golden ticks on what comes of it.
 
     A change that no test notices survives, and is shown with a situation in which a test would notice it. Changes that
@@ -28,4 +29,4 @@ def command(plan: str, tests: tuple[Path, ...], most: int, at_least: float | Non
     """
     from rplan.apps.doing.mutate import run
 
-    run(plan, tests, most, at_least, as_json)
+    run(**asked)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -25,22 +26,11 @@ PRESETS = ("paper", "modern", "both")
     help="Drive one episode of one row only, and write a page that plays it.",
 )  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Findings and the measures of every episode, for programs.")
-def command(
-    rows: tuple[str, ...],
-    seeds: int,
-    workers: int | None,
-    preset: str | None,
-    write: Path | None,
-    listing: bool,
-    case: str | None,
-    seed: int | None,
-    replay_file: Path | None,
-    as_json: bool,
-) -> None:
+def command(**asked: Any) -> None:
     """Run the experiments that papers report, all or those named (B4) or those of a paper (find-and-fetch).
 
     Seeds are fixed: the same command gives the same figures. Exit code 1 if an episode failed or a figure is missed.
     """
     from rplan.apps.doing.reproduce import run
 
-    run(rows, seeds, workers, preset, write, listing, case, seed, replay_file, as_json)
+    run(**asked)

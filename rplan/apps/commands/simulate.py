@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -24,21 +25,11 @@ from rplan.apps import talk
 @click.option("--allow-holes", is_flag=True, help="Drive a plan that has a hole.")
 @click.option("--json", "as_json", is_flag=True, help="The verdict for programs.")
 @talk.with_libraries
-def command(
-    plan: str,
-    scenario: str | None,
-    seed: int,
-    until: float | None,
-    record: Path | None,
-    replay: Path | None,
-    plot: Path | None,
-    allow_holes: bool,
-    as_json: bool,
-) -> None:
+def command(**asked: Any) -> None:
     """Drive a robot by PLAN through a scenario and say whether the task was done, and why each switch happened.
 
     Exit code 0 only if the task is done.
     """
     from rplan.apps.doing.simulate import run
 
-    run(plan, scenario, seed, until, record, replay, plot, allow_holes, as_json)
+    run(**asked)

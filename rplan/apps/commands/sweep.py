@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -35,21 +36,7 @@ from rplan.apps import talk
 @click.option("--allow-holes", is_flag=True, help="Drive a plan that has a hole.")
 @click.option("--json", "as_json", is_flag=True, help="The summary for programs.")
 @talk.with_libraries
-def command(
-    plan: str,
-    seed_texts: tuple[str, ...],
-    scenario_texts: tuple[str, ...],
-    params: tuple[str, ...],
-    until: float | None,
-    output: Path,
-    resume: bool,
-    workers: int | None,
-    engine: str,
-    scheduler: str | None,
-    require_done: float | None,
-    allow_holes: bool,
-    as_json: bool,
-) -> None:
+def command(**asked: Any) -> None:
     """Run PLAN in every combination of scenario, parameter values and seed, each on a core of its own.
 
     One row an episode, in a fixed order; they are the same however many workers there are. What is wrong with the
@@ -57,18 +44,4 @@ def command(
     """
     from rplan.apps.doing.sweep import run
 
-    run(
-        plan,
-        seed_texts,
-        scenario_texts,
-        params,
-        until,
-        output,
-        resume,
-        workers,
-        engine,
-        scheduler,
-        require_done,
-        allow_holes,
-        as_json,
-    )
+    run(**asked)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any
 
 import click
 
@@ -18,9 +18,7 @@ from rplan.apps import talk
 @click.option("--strict", is_flag=True, help="A name that nothing declares is an error.")
 @click.option("--allow-holes", is_flag=True, help="A hole is a warning.")
 @talk.with_libraries
-def command(
-    plan: str, source: BinaryIO, readings: Path | None, switches: bool, strict: bool, allow_holes: bool
-) -> None:
+def command(**asked: Any) -> None:
     """Read one JSON object a line, percept → value (numbers in SI), and write what PLAN decides, one a line.
 
     A percept's key is its name, or its canonical text where it has arguments. The first bad line ends it with exit
@@ -29,4 +27,4 @@ def command(
     """
     from rplan.apps.doing.tick import run
 
-    run(plan, source, readings, switches, strict, allow_holes)
+    run(**asked)
