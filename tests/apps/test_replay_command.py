@@ -85,6 +85,15 @@ def test_a_goal_that_is_given_up_says_for_what() -> None:
     assert loser.firing("1", "") == ()
 
 
+def test_in_a_hole_each_goal_says_what_does_not_go_together() -> None:
+    rules = "(defgoalr (ach wash) (when (dirty) (do a wash)))\n(defgoalr (ach run) (when (late) (do a run)))\n"
+    source = f"(plan p)\n(defoutput a symbol)\n{rules}(goalem (and (ach wash) (ach run)))\n"
+    loser = Loser(compile_plan(Source("p.rplan", source), allow_holes=True))
+    because = {(one["goal"], one["because"]) for one in loser.lost("11", "")}
+    assert ("(ach run)", "no way is open: a must be wash and run") in because
+    assert "hole" not in {one["reason"] for one in loser.lost("10", "")}
+
+
 def test_a_rule_fires_where_it_or_a_subgoal_of_it_sets_something() -> None:
     loser = Loser(compile_file(FIND))
     assert loser.firing("0" * 12, "") == (

@@ -105,8 +105,7 @@ class Loser:
 
     def _lost(self, inputs: list[bool], registers: list[bool]) -> Iterator[Json]:
         ways = self._compiled.ways
-        way = taken_way(ways, inputs, registers)
-        for one in () if way.hole else lost(ways, way, inputs, registers):
+        for one in lost(ways, taken_way(ways, inputs, registers), inputs, registers):
             if not one.part_of:
                 place = _place(one.span, self._compiled)
                 yield {"goal": one.goal, "because": one.because, "reason": one.reason} | place
